@@ -217,14 +217,6 @@ def _table(*entries: Variable) -> dict[str, Variable]:
     return {entry.name: entry for entry in entries}
 
 
-OF_WINGS = _table(
-    *(
-        Variable(name, (), units, long_name, comment=comment)
-        for model in wings.models().values()
-        for name, units, long_name, comment in model.variables
-    )
-)
-"""What models of wings answer beside the responses, by name."""
 HISTORIES = _table(
     Variable("contact_force", ("time",), "N", "contact force"),
     Variable("midspan_deflection", ("time",), "m", "deflection of the beam at mid-span"),
@@ -251,7 +243,14 @@ COORDINATES = _table(
     Variable("duration", (), "s", "simulated time"),
     Variable("run", ("run",), "1", "number of the run"),
 )
-VARIABLES = RESPONSES | OF_WINGS | HISTORIES | PROFILES | COORDINATES
+_OF_WINGS = _table(
+    *(
+        Variable(name, (), units, long_name, comment=comment)
+        for model in wings.models().values()
+        for name, units, long_name, comment in model.variables
+    )
+)
+VARIABLES = RESPONSES | _OF_WINGS | HISTORIES | PROFILES | COORDINATES
 """Every variable but those of bits (FLAGS) and the varied parameters (for these see PARAMETERS)."""
 
 

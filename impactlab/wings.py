@@ -35,11 +35,10 @@ class Size:
 class Model:
     """A model of the beam beside those of the kernels.
 
-    name: word for it in `beam_model`; label: in figures. solver: the name of its solver in designs.
-    trait: what `describe` says of studies that have runs of it. advice: where it can be solved.
-    sizes: of its mesh, of which a run needs one; axis: prefix of their variables in the analysis;
-    axis_title: heads their convergence. variables: answers beside those of the beam models: name,
-    unit, meaning and comment of each.
+    name: in `beam_model`; label: in figures; solver: name of its solver in designs; trait: of
+    studies that have runs of it; advice: where it can be solved. sizes: of its mesh, of which a run
+    needs one; axis, axis_title: prefix of their variables in the analysis, and title. variables:
+    name, unit, meaning and comment of answers that the beam models do not have.
 
     references: its `solver` (a study.solvers.Solver); `axis` (an analysis.convergence.axes.Axis);
     `checks` of studies that have runs of it, see study.schema.checks; `costs`, see study.estimate;

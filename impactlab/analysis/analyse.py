@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pkgutil import resolve_name
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -53,9 +54,9 @@ def analyse(
             "the runs are not those of a study: analyse what il.Study(...).run() gives"
         )
     wanted = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
-    plan = str(runs.attrs.get("method")), {str(dim): size for dim, size in runs.sizes.items()}, True
-    possible = {name: entry for name, entry in ANALYSES.items() if entry.possible(*plan)}
-    listed = (resolve_name(entry.place) for name, entry in possible.items() if name in wanted)
+    plan: Any = runs.attrs.get("method"), runs.sizes, True
+    entries = [ANALYSES[name] for name in ANALYSES if name in wanted]
+    listed = (resolve_name(entry.place) for entry in entries if entry.possible(*plan))
     parts = [module.analysis(runs) for module in listed if module.applies(runs)]
     requested = xr.Dataset(coords=labels(runs))
     merged = xr.merge([requested, *parts], join="exact", compat="equals", combine_attrs="override")

@@ -113,7 +113,7 @@ def _checked(base: str, values: dict[str, Value]) -> tuple[Impact, Discretisatio
 def compile_kernels(
     further: Annotated[
         bool,
-        typer.Option("--wings", help="Compile those of the wings, such as the 3-D model, too."),
+        typer.Option("--wings", help="Compile those of the 3-D model, too."),
     ] = False,
 ) -> None:
     """Compile the kernels of the beam models into their cache.

@@ -97,8 +97,7 @@ def refine_cases(runs: xr.Dataset, solve: Step, count: int | None = None) -> xr.
             f"study {study!r}: its runs are of method {method}, but only those of sobol can be "
             "refined"
         )
-    further = [model.solver for model in wings.models().values()]
-    if "function" in runs.attrs or runs.attrs.get("solver") in further:
+    if "function" in runs.attrs or wings.among(runs.coords.get("beam_model", "")):
         raise ValueError(f"study {study!r}: its runs are not of a beam model, so they have no grid")
     names, first = listed(runs, "varied"), _first(in_order(runs), count).compute()
     nodes, points = int(runs["nodes"]), int(runs["points"])
