@@ -11,22 +11,12 @@ from __future__ import annotations
 import sys
 
 import numpy as np
+from functions import g, ishigami
 
 from impactlab.analysis.regimes import cuts
 
 SEEDS = int(sys.argv[1]) if len(sys.argv) > 1 else 200
 SIZES = (64, 128, 256, 512, 1024, 2048)
-
-
-def g(x, a):
-    """Return Sobol's G function."""
-    return np.prod((np.abs(4 * x - 2) + a) / (1 + a), axis=1)
-
-
-def ishigami(x):
-    """Return Ishigami's function of three parameters between 0 and 1."""
-    x = np.pi * (2 * x - 1)
-    return np.sin(x[:, 0]) * (1 + 0.1 * x[:, 2] ** 4) + 7 * np.sin(x[:, 1]) ** 2
 
 
 def smooth(function, parameters=1):
@@ -47,9 +37,9 @@ ONE = {
     "sum of 3": smooth(lambda x: x @ [4, 2, 1], 3),
     "sum of 8": smooth(lambda x: x @ np.arange(1, 9), 8),
     "product of 4": smooth(lambda x: x.prod(axis=1), 4),
-    "Ishigami": smooth(ishigami, 3),
-    "G of 5": smooth(lambda x: g(x, np.array([0, 0.5, 3, 9, 99])), 5),
-    "G of 3, all alike": smooth(lambda x: g(x, np.zeros(3)), 3),
+    "Ishigami": smooth(ishigami("x0", "x1", "x2").function, 3),
+    "G of 5": smooth(g(0, 0.5, 3, 9, 99).function, 5),
+    "G of 3, all alike": smooth(g(0, 0, 0).function, 3),
     "sine": smooth(lambda x: np.sin(2 * np.pi * x[:, 0])),
     "square": smooth(lambda x: (x[:, 0] - 0.3) ** 2),
     "tenth power": smooth(lambda x: x[:, 0] ** 10),

@@ -57,8 +57,7 @@ class ErrorModel:
     chaos are small, but those that it lacks are not. With one parameter anywhere in its range and
     the others at their medians, the intervals of 200 surrogates of 400 impacts in 8 parameters
     (studies/sobol.yaml) hold the solver's answer in 97 to 100 % per response, and in 88 to 100 %
-    per response and parameter; of two functions with kinks and interactions and samples of 200, in
-    94 to 100 %.
+    per response and parameter (tests/benchmarks/surrogate_coverage.py).
     """
 
     error: float
