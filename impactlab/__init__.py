@@ -1,7 +1,7 @@
 """A sphere strikes an elastic-plastic beam: one impact, or studies of many.
 
 >>> import impactlab as il
->>> run = il.simulate(il.paper_impact("5 m/s"), duration="1 ms")
+>>> run = il.simulate(il.paper_impact("5 m/s"), duration="10 ms")
 
 One impact
     paper_impact      the source paper's sphere and beam, at a velocity
@@ -10,6 +10,8 @@ One impact
     Discretisation    nodes, points and scheme in time
     simulate          solve it: an xarray.Dataset
     simulate_many     solve lists of parameters, in pairs or all combinations
+    ImplausibleWarning, TooShortWarning
+                      of values, and of a duration that leaves responses missing
 
 A study
     Study           sample, solve, resume, analyse and report many impacts

@@ -11,6 +11,8 @@ from .model.impact import Material as Material
 from .model.impact import Sphere as Sphere
 from .model.impact import corrected_impact as corrected_impact
 from .model.impact import paper_impact as paper_impact
+from .model.plausibility import ImplausibleWarning as ImplausibleWarning
+from .model.plausibility import TooShortWarning as TooShortWarning
 from .report.answer import answers as answers
 from .simulate import simulate as simulate
 from .simulate import simulate_many as simulate_many

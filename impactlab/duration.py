@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from impactlab.model.cost import contact_time, swing
 from impactlab.model.quantities import engineering
 from impactlab.solver import outputs
@@ -19,22 +21,28 @@ _SWINGS = {
 """By status bit of a short duration: how many swings a run lasts that gives the response."""
 
 
-def too_short(case: Any, status: int) -> str:
-    """Return which responses a run is too short for, and a duration that lasts; "" for none.
+def too_short(cases: Any, status: Any) -> str:
+    """Return which responses runs are too short for, and a duration that lasts; "" for none.
 
-    case: a record of solver.types.CASE. No duration is given where gravity takes the sphere's
-    velocity in three swings: it may rest on the beam.
+    cases: records of solver.types.CASE of one duration. status: of each. No duration is stated
+    where gravity takes a sphere's velocity in three swings, or the duration should have lasted.
     """
-    bits = [bit for bit in _SWINGS if status & bit]
-    if not bits or status & outputs.DIVERGED:
+    status = np.ravel(status)
+    diverged = status & outputs.DIVERGED != 0
+    bits = np.where(diverged, 0, status)[:, None] & np.array(list(_SWINGS))
+    short = bits.any(axis=1)
+    if not short.any():
         return ""
     missing = {
         entry.name: entry.missing and FAILURES[entry.missing] for entry in RESPONSES.values()
     }
     names = ", ".join(name for name, reason in missing.items() if reason and reason[0] in bits)
-    swings = max(map(_SWINGS.__getitem__, bits))
-    lasting = max(contact_time(case) + swings * swing(case), 2.0 * case["duration"])
-    remedy = f"take about {engineering(lasting, 's', 2)}"
-    if swings == 1.0 and case["velocity"] < 3.0 * case["gravity"] * swing(case):
-        remedy = "take a longer one, unless gravity keeps the sphere on the beam"
-    return f"duration = {engineering(case['duration'], 's')} is too short for {names}: {remedy}"
+    swings, cases = np.where(bits, list(_SWINGS.values()), 0.0).max(axis=1)[short], cases[short]
+    seconds = cases[0]["duration"]
+    lasting = contact_time(cases) + swings * swing(cases)
+    remedy = f"take about {engineering(max(lasting.max(), 2.0 * seconds), 's', 2)}"
+    slow = cases["velocity"] < 3.0 * cases["gravity"] * swing(cases)
+    if ((swings == 1.0) & (slow | (lasting < seconds))).any():
+        remedy = "try a longer one; at its end, too, the beam may be moving up behind the sphere"
+    runs = f" in {cases.size:,} of {status.size:,} runs" * (status.size > 1)
+    return f"duration = {engineering(seconds, 's')} is too short for {names}{runs}: {remedy}"

@@ -87,7 +87,7 @@ def response(
     Examples
     --------
     >>> runs = il.simulate_many(
-    ...     il.paper_impact(), il.Discretisation(nodes=21), duration="1 ms", combine="product",
+    ...     il.paper_impact(), il.Discretisation(nodes=21), duration="11 ms", combine="product",
     ...     varied={"velocity": [1, 2, 3], "contact": ["hertz", "stronge"]})
     >>> ax = il.plot.response(runs, "contact_duration", x="velocity", hue="contact")
     >>> ax.get_xlabel(), ax.get_ylabel(), len(ax.lines)
@@ -150,9 +150,9 @@ def run(data: xr.Dataset) -> Any:
 
     Examples
     --------
-    >>> run = il.simulate(il.paper_impact(), il.Discretisation(nodes=41), duration="0.5 ms")
+    >>> run = il.simulate(il.paper_impact(), il.Discretisation(nodes=41), duration="6 ms")
     >>> [ax.get_ylabel() for ax in il.plot.run(run)][:2]
-    ['Contact force (kN)', 'Displacement down (µm)']
+    ['Contact force (kN)', 'Displacement down (mm)']
     """
     if data.get("contact_force", xr.DataArray()).dims != ("time",) or "deflection" not in data:
         raise ValueError("run: expected the dataset of one impact, from il.simulate")

@@ -99,7 +99,7 @@ def simulate(
     Examples
     --------
     >>> grid = il.Discretisation(nodes=41)
-    >>> run = il.simulate(il.paper_impact("2 m/s"), grid, duration="0.5 ms")
+    >>> run = il.simulate(il.paper_impact("2 m/s"), grid, duration="10 ms")
     >>> f"{run.peak_force.item() / 1e3:.0f} kN, {run.contact_force.sizes['time']} times"
     '24 kN, 2001 times'
     """
@@ -109,9 +109,7 @@ def simulate(
     _warn(numbers(impact, grid))
     run = run_dataset(impact, grid, duration=seconds, samples=samples)
     if int(run["status"]):
-        case = case_table(impact, grid, duration=seconds)[0]
-        if message := too_short(case, int(run["status"])):
-            warnings.warn(message, TooShortWarning, stacklevel=2)
+        _warn_too_short(case_table(impact, grid, duration=seconds), run["status"].values)
     return run
 
 
@@ -176,11 +174,13 @@ def simulate_many(
     -----
     ImplausibleWarning
         If a value is implausible.
+    TooShortWarning
+        If runs end before some responses can be given; the message names a sufficient duration.
 
     Examples
     --------
     >>> many = il.simulate_many(
-    ...     il.paper_impact(), il.Discretisation(nodes=41), duration="0.5 ms",
+    ...     il.paper_impact(), il.Discretisation(nodes=41), duration="10 ms",
     ...     varied={"velocity": ["1 m/s", "2 m/s"], "contact": ["hertz", "stronge", "mjg"]},
     ...     combine="product")
     >>> dict(many.peak_force.sizes)
@@ -196,6 +196,7 @@ def simulate_many(
     ends = {name: (min(values), max(values)) for name, values in lists.items() if len(values)}
     _warn(numbers(impact, grid) | ends)
     answers = {name: values.reshape(shape) for name, values in solve(cases).items()}
+    _warn_too_short(cases, answers["status"])
     fixed = flatten(impact, grid.resolved(map(str, lists.get("beam_model", [impact.beam_model]))))
     if not {"sphere_radius", "sphere_density"} & lists.keys():
         fixed["sphere_mass"] = impact.sphere.total_mass
@@ -246,10 +247,10 @@ def _in_si(name: str, values: Any) -> Any:
 
 def _seconds(value: Quantity) -> float:
     try:
-        return positive("simulate", "duration", duration_of(as_text(value)))
+        seconds = duration_of(as_text(value))
     except ValueError as error:
-        reason = str(error).removeprefix("simulate.duration = ")
-        raise ValueError(f"simulate.duration = {value!r}: {reason}") from None
+        raise ValueError(f"simulate.duration = {value!r}: {error}") from None
+    return positive("simulate", "duration", seconds)
 
 
 def _warn(ends: dict[str, Any]) -> None:
@@ -261,6 +262,11 @@ def _warn(ends: dict[str, Any]) -> None:
         if each.impossible:
             raise ValueError(f"{each.name}: {each.reason}")
         warnings.warn(f"{each.name}: {each.reason}", ImplausibleWarning, stacklevel=3)
+
+
+def _warn_too_short(cases: Any, status: Any) -> None:
+    if message := too_short(cases, status):
+        warnings.warn(message, TooShortWarning, stacklevel=3)
 
 
 def case_table(

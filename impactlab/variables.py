@@ -103,14 +103,14 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "stiffness_ratio_outside_data": (
         outputs.STIFFNESS_RATIO_OUTSIDE_DATA,
-        "the sphere's Young's modulus is outside 0.7 to 1.8 times the beam's, where the data of "
+        "the sphere's Young's modulus is outside 0.75 to 1.75 times the beam's, where the data of "
         "the contact law hold: dents may be off by 4 to 7 %",
     ),
     "contact_circle_outside_data": (
         outputs.CONTACT_CIRCLE_OUTSIDE_DATA,
-        "the contact radius is above 0.4 of half the beam's depth, where the data of compliance "
-        "and prestress end: forces and indentations may be off by 3 to 4 % from 0.6 on, or where "
-        "the beam itself yields",
+        "the contact radius is above 0.6 of half the beam's depth or 0.3 of half its width, "
+        "beyond what the corrections are tested for: forces may be off by 6 %, indentations "
+        "by 4 %",
     ),
 }
 """Warnings on available responses, by name: (bit in `remarks`, in words)."""

@@ -71,7 +71,7 @@ def simulate(
             warnings.simplefilter("ignore")
             answers = dataset = solve_one(impact, grid, duration=seconds)
     print_responses(answers)
-    if message := too_short(cases[0], int(answers["status"].item())):
+    if message := too_short(cases, answers["status"]):
         print(f"--{message}.")
     if output:
         from impactlab.files import write_netcdf

@@ -72,29 +72,28 @@ def work(cases: Any) -> Any:
     return np.where(cases["scheme"] == SCHEMES.index("modal"), steps * modal, leapfrog)
 
 
-def contact_time(case: Any) -> float:
-    """Return an upper estimate of a run's time in contact, in s; case: a record of types.CASE."""
-    _, indentation = _hertz(case)
-    return float(_CONTACTS * 2.94 * indentation / case["velocity"])
+def contact_time(cases: Any) -> Any:
+    """Return an upper estimate of the time in contact of a run, or of each, in s."""
+    _, indentation = _hertz(cases)
+    return _CONTACTS * 2.94 * indentation / cases["velocity"]
 
 
-def swing(case: Any) -> float:
-    """Return an upper estimate of the time in s in which a run's sphere and beam swing once.
+def swing(cases: Any) -> Any:
+    """Return an upper estimate of the time in s in which sphere and beam swing once, of each run.
 
     That is the period of one mass on the bending stiffness, with 17/35 of the mass of a beam that
     is struck at mid-span (Cox), and the time in which a plastic hinge there stops the sphere. A
     rigid beam does not swing.
     """
-    if case["beam_model"] == BEAM_MODELS.index("rigid"):
-        return 0.0
-    span, depth = case["beam_span"], case["beam_depth"]
-    area = case["beam_width"] * depth
-    stiffness = 4.0 * case["beam_youngs_modulus"] * area * depth**2 / span**3
-    mass = case["sphere_mass"] + 17.0 / 35.0 * case["beam_density"] * area * span
-    yields = case["beam_model"] != BEAM_MODELS.index("elastic")
-    collapse = case["beam_yield_stress"] * area * depth / span
-    hinge = yields * case["sphere_mass"] * case["velocity"] / collapse
-    return float(2.0 * np.pi * np.sqrt(mass / stiffness) + hinge)
+    span, depth = cases["beam_span"], cases["beam_depth"]
+    area = cases["beam_width"] * depth
+    stiffness = 4.0 * cases["beam_youngs_modulus"] * area * depth**2 / span**3
+    mass = cases["sphere_mass"] + 17.0 / 35.0 * cases["beam_density"] * area * span
+    yields = cases["beam_model"] != BEAM_MODELS.index("elastic")
+    collapse = cases["beam_yield_stress"] * area * depth / span
+    hinge = yields * cases["sphere_mass"] * cases["velocity"] / collapse
+    period = 2.0 * np.pi * np.sqrt(mass / stiffness)
+    return np.where(cases["beam_model"] == BEAM_MODELS.index("rigid"), 0.0, period + hinge)
 
 
 def _hertz(cases: Any) -> tuple[Any, Any]:

@@ -25,11 +25,25 @@ _STOCKY = 0.2  # depth over span from which on shear is no small part of a beam'
 
 
 class ImplausibleWarning(UserWarning):
-    """A value that is implausible, or even impossible."""
+    """A value that is implausible, or even impossible.
+
+    >>> import warnings
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", il.ImplausibleWarning)
+    ...     run = il.simulate(il.paper_impact("2 km/s"), duration="1 ms")
+    Traceback (most recent call last):
+    impactlab.model.plausibility.ImplausibleWarning: velocity: 2000 m/s: density velocity²/yield ...
+    """
 
 
 class TooShortWarning(UserWarning):
-    """A duration that ends before some responses can be given."""
+    """A duration that ends before some responses can be given.
+
+    >>> import warnings
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("ignore", il.TooShortWarning)
+    ...     run = il.simulate(il.paper_impact(), duration="0.3 ms")
+    """
 
 
 class Implausibility(NamedTuple):

@@ -12,6 +12,7 @@ from impactlab.solver.beam import Grid
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.finite_element import (
     LARGEST_CIRCLE,
+    LARGEST_CIRCLE_ACROSS,
     LARGEST_HARDENING,
     LARGEST_POISSONS_RATIO,
     LARGEST_RATIO,
@@ -96,7 +97,8 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
     corrected = case.contact_prestress > 0 or case.width_inertia > 0.0
     if corrected or pair.compliance != 0.0:
         a = radius(pair.law, contact.delta_m, pair.E, pair.R, pair.S_y, pair.nu)
-        if a > LARGEST_CIRCLE * 0.5 * case.beam_depth:
+        largest = min(LARGEST_CIRCLE * case.beam_depth, LARGEST_CIRCLE_ACROSS * case.beam_width)
+        if a > 0.5 * largest:
             answer.remarks |= CONTACT_CIRCLE_OUTSIDE_DATA
     yields = contact.delta_m > yield_indentation(pair.E, pair.R, pair.S_y)
     if not (yields and (corrected or pair.law == _FINITE_ELEMENT)):

@@ -11,7 +11,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Literal
 
-from impactlab.model.plausibility import ImplausibleWarning
+from impactlab.model.plausibility import ImplausibleWarning, TooShortWarning
 from impactlab.types import Floats
 from impactlab.verification.comparisons import Comparison
 
@@ -104,7 +104,8 @@ class Check:
         start, finding, reason = perf_counter(), Finding(()), ""
         try:
             with warnings.catch_warnings():  # limits of theories are implausible by design
-                warnings.simplefilter("ignore", ImplausibleWarning)
+                for category in (ImplausibleWarning, TooShortWarning):
+                    warnings.simplefilter("ignore", category)
                 finding = self.check()
         except Exception as error:
             place = traceback.extract_tb(error.__traceback__)[-1]

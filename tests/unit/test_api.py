@@ -27,6 +27,8 @@ from impactlab.study.sampling import METHODS
 from impactlab.study.schema.files import read_study
 from impactlab.study.schema.written import _Distribution, _Sampling, plain
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 UNITS = pint.UnitRegistry()
 ROOT = Path(__file__).parents[2]
 STUDIES = [
@@ -185,7 +187,8 @@ def test_quantities_are_numbers_texts_or_pint(made, value):
     assert made() == pytest.approx(value, rel=1e-15)
 
 
-MANY = il.simulate_many(FAR, GRID, duration="0.1 ms", varied={"velocity": [1.0, 2.0]})
+def many():
+    return il.simulate_many(FAR, GRID, duration="0.1 ms", varied={"velocity": [1.0, 2.0]})
 
 
 @pytest.mark.parametrize(
@@ -205,8 +208,8 @@ MANY = il.simulate_many(FAR, GRID, duration="0.1 ms", varied={"velocity": [1.0, 
         ),
         (lambda: small(sampling=il.Sobol), "Study: sampling: is of type type, which no study"),
         (lambda: small().run(workers=0), "run.workers = 0: must be a whole number of at least 1"),
-        (lambda: il.analyse(MANY), "the runs are not those of a study"),
-        (lambda: il.plot.run(MANY), "run: expected the dataset of one impact"),
+        (lambda: il.analyse(many()), "the runs are not those of a study"),
+        (lambda: il.plot.run(many()), "run: expected the dataset of one impact"),
         (lambda: small(sampling=None), "Study: sampling: is required"),
         (lambda: small(responses=["force"]), "Study: responses.0 = 'force': unknown response; did"),
         (lambda: small(impact={"base": "paper", "speed": 1}), "Study: impact.speed = 1: unknown"),

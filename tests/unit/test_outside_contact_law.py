@@ -18,6 +18,8 @@ from impactlab.variables import FAILED, MARKS, RESPONSES
 from impactlab.verification.cases import rigid_backed
 from impactlab.verification.solutions import hertz
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 BIT, WORDS = MARKS["outside_contact_law"]
 GRID = il.Discretisation(nodes=21, points=3)
 
@@ -41,7 +43,7 @@ def test_marked_exactly_where_the_indentation_is_beyond_the_limit(velocity):
     assert all(np.isfinite(run[name].item()) for name in RESPONSES)
 
 
-@pytest.mark.filterwarnings("ignore::impactlab.model.plausibility.ImplausibleWarning")
+@pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning")
 @pytest.mark.parametrize("law", LAWS)
 def test_every_law_ends_somewhere(law):
     """A velocity at which even Hertz's law would have its sphere wholly in the beam."""

@@ -34,6 +34,8 @@ from impactlab.variables import (
     status_bits,
 )
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 TABLE = RESPONSES | HISTORIES | PROFILES | COORDINATES | PARAMETERS
 BITS = {name: bit for name, (bit, _) in STATUS_FLAGS.items()}
 WHOLE_RUN = {"diverged", "energy_out_of_balance", "stopped"}

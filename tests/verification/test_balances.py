@@ -17,6 +17,8 @@ from impactlab.verification.energy import audit
 
 from .test_plain_beam import drawn
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 NO_ANSWER = STATUS_FLAGS["diverged"][0] | STATUS_FLAGS["energy_out_of_balance"][0]
 
 
@@ -85,7 +87,7 @@ def test_force_moves_the_beam():
     assert moved == pytest.approx(driven, rel=2e-3)
 
 
-@pytest.mark.filterwarnings("ignore::impactlab.model.plausibility.ImplausibleWarning")
+@pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning")
 @pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="takes hours as plain Python")
 @pytest.mark.parametrize(("scheme", "nodes", "cases"), [("leapfrog", 101, 200), ("modal", 41, 150)])
 def test_balances_of_hundreds_of_impacts(scheme, nodes, cases):

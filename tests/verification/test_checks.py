@@ -20,7 +20,8 @@ SLOW = ("contact_patch", "contact_prestress", "strain_rate", "strip")
 """They need kernels of their own, each compiled for ten seconds."""
 
 
-@pytest.mark.filterwarnings("ignore::impactlab.model.plausibility.ImplausibleWarning")
+@pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning")
+@pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=[pytest.mark.long] * (name in SLOW)) for name in CATALOGUE],

@@ -10,6 +10,8 @@ from impactlab.solver import SCHEMES
 from impactlab.variables import HISTORIES, RESPONSES
 from impactlab.verification.cases import elastic
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 GRID = il.Discretisation(nodes=51, points=9)
 GRIDS = [replace(GRID, scheme=scheme) for scheme in SCHEMES]
 

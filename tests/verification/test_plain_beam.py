@@ -30,7 +30,7 @@ from .. import plain_beam
 
 pytestmark = [
     pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="takes hours as plain Python"),
-    pytest.mark.filterwarnings("ignore::impactlab.model.plausibility.ImplausibleWarning"),
+    pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning"),
 ]
 
 TOLERANCE = 1e-9

@@ -238,7 +238,7 @@ _REGISTRY = (
             "indentation up to 320 times that of first yield and 0.0194 of the sphere's radius, "
             "where the data end; E*/S_y from 300 to 660 (fitted at 333; at 600 the force is up "
             "to 1.1 % higher); Poisson's ratio 0.3 and an elastic sphere about as stiff as the "
-            "flat (a rigid one: lower by 8 %), which is not checked"
+            "flat (a rigid one: lower by 8 %)"
         ),
         yield_pressure=1.65,
     ),

@@ -137,7 +137,7 @@ def bracketed(name: str, bears: Callable[[Record, Pair], tuple[float, float]]) -
         """
         low = high = lowest
         F, missed, rounding = np.nan, 1.0, _ROUNDING * approach
-        for _ in range(_MARCHES):  # by what is missed: beyond no place under a negative compliance
+        for _ in range(_MARCHES):  # steps that pass no solution where compliance < 0
             load(contact, pair, high)
             F, borne = bears(contact, pair)
             missed = approach - borne

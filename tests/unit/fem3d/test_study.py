@@ -23,6 +23,8 @@ from impactlab.study.schema.files import study_of_text
 from impactlab.study.store import OutputSpec
 from impactlab.variables import STATUS_FLAGS
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 TEXT = """
 title: Both
 impact: {base: paper}

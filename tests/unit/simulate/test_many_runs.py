@@ -12,6 +12,8 @@ from impactlab.model.parameters import with_values
 from impactlab.simulate import case_table, solve
 from impactlab.variables import FLAGS, HISTORIES, PROFILES, RESPONSES
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)
 DURATION = 2e-3

@@ -13,7 +13,6 @@ import xarray as xr
 import impactlab as il
 from impactlab.fem3d.wing import SIZES
 from impactlab.model.parameters import PARAMETERS, flatten
-from impactlab.model.plausibility import TooShortWarning
 from impactlab.solver import RULES
 from impactlab.variables import (
     COORDINATES,
@@ -24,6 +23,8 @@ from impactlab.variables import (
     STATUS_FLAGS,
     WARNINGS,
 )
+
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)
@@ -196,12 +197,25 @@ def test_a_short_duration_names_what_is_missing_and_lasts_as_it_says(
 ) -> None:
     impact = replace(il.paper_impact(velocity), beam_model=model)
     grid = il.Discretisation(nodes=31)
-    with pytest.warns(TooShortWarning, match=f"too short for .*{missing}") as caught:
+    with pytest.warns(il.TooShortWarning, match=f"too short for .*{missing}") as caught:
         il.simulate(impact, grid, duration=duration, samples=2)
     lasting = str(caught[0].message).partition("take about ")[2]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert il.simulate(impact, grid, duration=lasting, samples=2).status == 0
+
+
+def test_no_duration_is_promised_where_a_long_one_gave_no_rebound() -> None:
+    with pytest.warns(il.TooShortWarning, match=r"restitution: try a longer one;"):
+        il.simulate(il.paper_impact(0.3), il.Discretisation(nodes=41), duration="60 ms", samples=2)
+
+
+def test_many_short_runs_give_one_warning() -> None:
+    impact = replace(il.paper_impact(), beam_model="rigid")
+    words = r"too short for contact_duration.* in 1 of 2 runs: take about 1\.8 ms"
+    with pytest.warns(il.TooShortWarning, match=words) as caught:
+        il.simulate_many(impact, duration="0.4 ms", varied={"velocity": [0.01, 5.0]})
+    assert len(caught) == 1
 
 
 @pytest.mark.parametrize("duration", [2, 0.5, "2", "2."])

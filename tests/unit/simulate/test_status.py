@@ -20,6 +20,8 @@ from impactlab.variables import (
     reasons,
 )
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)
 DURATION = 2e-3
@@ -68,7 +70,12 @@ DEFAULT_LAW = replace(il.paper_impact(contact="finite_element"), beam_model="tim
             {"sphere_youngs_modulus": 160e9, "beam_yield_stress": 300e6},
             {"sphere_youngs_modulus": 70e9, "beam_yield_stress": 150e6},
         ),
-        ("contact_circle", {"velocity": 5.0}, {"velocity": 10.0}),
+        ("contact_circle", {"velocity": 15.0}, {"velocity": 20.0}),
+        (
+            "contact_circle",
+            {"velocity": 5.0, "beam_depth": 0.012, "beam_width": 0.036},
+            {"velocity": 5.0, "beam_depth": 0.012, "beam_width": 0.012},
+        ),
     ],
 )
 def test_an_input_outside_the_data_of_the_contact_law_is_named(cause, inside, outside):
@@ -95,7 +102,7 @@ def test_words_of_remarks_have_the_limits_of_the_law():
         ("LARGEST_HARDENING", "hardening"),
         ("LEAST_HARDNESS", "sphere_yield"),
         ("LEAST_STIFFNESS LARGEST_STIFFNESS", "stiffness_ratio"),
-        ("LARGEST_CIRCLE", "contact_circle"),
+        ("LARGEST_CIRCLE LARGEST_CIRCLE_ACROSS", "contact_circle"),
     ):
         words = WARNINGS[f"{cause}_outside_data"][1]
         for name in names.split():

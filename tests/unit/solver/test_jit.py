@@ -20,6 +20,8 @@ from impactlab.solver import jit
 from impactlab.solver.contact import LAWS
 from impactlab.variables import RESPONSES
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 KERNELS = Path(jit.__file__).parent
 
 

@@ -27,6 +27,8 @@ from impactlab.verification.modal_series import error
 from impactlab.verification.schemes import drawn
 from impactlab.verification.solutions.modal import solve
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 MU, EI, SPAN, FORCE = 13.0, 2e4, 0.8, 700.0
 JIT_ONLY = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="takes minutes without")
 
@@ -199,7 +201,7 @@ def test_a_step_with_any_sections_yielding_is_stable(make_case, values, nodes):
 
 
 @JIT_ONLY
-@pytest.mark.filterwarnings("ignore::impactlab.model.plausibility.ImplausibleWarning")
+@pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning")
 def test_random_cases_stay_in_balance_at_the_largest_time_step():
     varied = drawn(60, seed=4)
     varied["nodes"] = np.random.default_rng(5).choice([5, 11, 31, 101], 60)

@@ -18,6 +18,8 @@ from impactlab.verification.solutions.contact_laws import LAWS as REFERENCE
 from impactlab.verification.solutions.contact_laws import joints, law_on_half_space
 from impactlab.verification.solutions.stronge import StrongeImpact
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 ELASTIC = {"contact": "hertz", "beam_yield_stress": 200e9}
 
 

@@ -23,6 +23,8 @@ from impactlab.study.solvers import impact
 from impactlab.study.store import OutputSpec, Shards
 from impactlab.variables import RESPONSES
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 RESPONSES_ASKED = ["peak_force", "contact_duration", "restitution"]
 
 

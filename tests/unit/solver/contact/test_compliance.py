@@ -16,6 +16,8 @@ from impactlab.solver.contact.history import CONTACT, Pair, energies, force, loa
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.verification.solutions.beam_modes import strip_odd_modes, timoshenko_odd_modes
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 E, R, S_y, nu = 115e9, 0.035, 345e6, 0.3
 DEEP = 60e-6
 

@@ -15,6 +15,8 @@ from impactlab.study.errors import StudyError
 from impactlab.study.estimate import estimate
 from impactlab.study.schema.files import study_of_text
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 LAWS = ["stronge", "mjg", "thornton"]
 CHOICE = {"distribution": "choice", "values": LAWS, "weights": [2, 1, 1]}
 OWN = {"sobol": {"base_samples": 64}, "delta": {"samples": 400}, "pawn": {"samples": 400}}
