@@ -207,7 +207,7 @@ def value(coordinate: xr.DataArray, at: int) -> str:
     name, text = str(coordinate.name), values(coordinate, [at])[0]
     if name == "run":
         return f"run {text}"
-    counted = name in PARAMETERS and PARAMETERS[name].whole
+    counted = name in PARAMETERS and PARAMETERS[name].is_integer
     return f"{text} {name}" if counted else text + unit(coordinate)
 
 

@@ -28,7 +28,7 @@ class Parameter:
     """One entry: `path` leads from (impact, discretisation) to the field.
 
     units: UDUNITS spelling, "1" for a pure number. choices: the allowed words, for parameters
-    that are names; `whole`: for those that count; any_word: for those that may be words of any
+    that are names; is_integer: for those that count; any_word: for those that may be words of any
     kind, as the arguments of a Python function.
     """
 
@@ -37,7 +37,7 @@ class Parameter:
     long_name: str
     path: tuple[str, ...]
     choices: tuple[str, ...] = ()
-    whole: bool = False
+    is_integer: bool = False
     any_word: bool = False
 
 

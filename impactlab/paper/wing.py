@@ -1,4 +1,4 @@
-"""What this wing adds to the core."""
+"""Additions of this wing to the core."""
 
 from impactlab.wings import Wing
 

@@ -19,7 +19,7 @@ from impactlab.solver.jit import allocating, compiled, vectorised
 from impactlab.solver.types import ONE, TWO, Array
 
 
-class Beam(NamedTuple):
+class BeamState(NamedTuple):
     """The half beam's state.
 
     w: deflection (m) at this step and the next, in turns, (2, n + 4). u = dt w_t at half steps, du
@@ -33,7 +33,7 @@ class Beam(NamedTuple):
     plastic: Array
 
 
-class Grid(NamedTuple):
+class BeamGrid(NamedTuple):
     """mid: index of mid-span; dx (m); dt (s); mu = rho A (kg/m).
 
     per_dx2 = 1/dx^2. Shares in w of one step: factor = dt^2/(mu dx^2) of a second difference of
@@ -56,21 +56,21 @@ _NOTHING = 1e-100
 
 
 @compiled
-def make_grid(n: int, dx: float, dt: float, mu: float, EI: float) -> Grid:
+def make_grid(n: int, dx: float, dt: float, mu: float, EI: float) -> BeamGrid:
     """Return a grid with n spacings in the half beam, and what follows from it."""
     factor = dt**2 / (mu * dx**2)
-    return Grid(n + 1, dx, dt, mu, 1.0 / dx**2, factor, factor * EI / dx**2, dt**2 / (mu * dx))
+    return BeamGrid(n + 1, dx, dt, mu, 1.0 / dx**2, factor, factor * EI / dx**2, dt**2 / (mu * dx))
 
 
 @allocating
-def make_beam(grid: Grid) -> Beam:
+def make_beam(grid: BeamGrid) -> BeamState:
     """Return a beam at rest that has yielded nowhere."""
     size = grid.mid + 3
-    return Beam(np.zeros((2, size)), np.zeros(size), np.zeros(size), np.zeros(size))
+    return BeamState(np.zeros((2, size)), np.zeros(size), np.zeros(size), np.zeros(size))
 
 
 @compiled
-def rest_beam(beam: Beam) -> None:
+def rest_beam(beam: BeamState) -> None:
     """Put a beam back to rest."""
     for i in range(beam.u.size):
         beam.w[0, i] = beam.w[1, i] = beam.u[i] = beam.du[i] = beam.plastic[i] = 0.0
@@ -83,12 +83,12 @@ def reach(w: Array, now: int, first: int) -> int:
     return max(first - 2, 2) if moved else first
 
 
-# What follows runs at every step, so it takes arrays: a whole Beam takes longer to hand on.
+# What follows runs at every step, so it takes arrays: a whole BeamState takes longer to hand on.
 
 
 @vectorised
 def move_virgin(
-    w: Array, now: int, u: Array, first: int, stop: int, grid: Grid, kappa_y: float
+    w: Array, now: int, u: Array, first: int, stop: int, grid: BeamGrid, kappa_y: float
 ) -> float:
     """Move the nodes from `first` to before `stop`, where nothing has yielded yet, by one step.
 
@@ -112,7 +112,7 @@ def move(
     kappa_min: Array,
     kappa_max: Array,
     first: int,
-    grid: Grid,
+    grid: BeamGrid,
 ) -> float:
     """Move the nodes from `first` to mid-span by one step, without yielding further or a force.
 
@@ -131,7 +131,7 @@ def move(
 
 
 @compiled
-def strike(w: Array, now: int, u: Array, F: float, grid: Grid) -> None:
+def strike(w: Array, now: int, u: Array, F: float, grid: BeamGrid) -> None:
     """Add the contact force F (N) to a step already made, and mirror the nodes beyond the ends."""
     u[grid.mid] += grid.push * F
     w[1 - now, grid.mid] += grid.push * F
@@ -139,7 +139,7 @@ def strike(w: Array, now: int, u: Array, F: float, grid: Grid) -> None:
 
 
 @compiled
-def mirror(w: Array, now: int, grid: Grid) -> None:
+def mirror(w: Array, now: int, grid: BeamGrid) -> None:
     """Set the nodes beyond both ends after a step: w is odd at the support, even at mid-span."""
     after, mid = 1 - now, grid.mid
     w[after, 0] = -w[after, 2]
@@ -151,7 +151,7 @@ def mirror(w: Array, now: int, grid: Grid) -> None:
 
 
 @compiled
-def kinetic_energy(beam: Beam, grid: Grid, now: int, u_mid: float) -> float:
+def kinetic_energy(beam: BeamState, grid: BeamGrid, now: int, u_mid: float) -> float:
     """Return the kinetic energy in J, from the product of velocities half a step before and after.
 
     With the elastic energy it is what leapfrog conserves exactly in a linear beam. u_mid (m): u at
@@ -162,7 +162,9 @@ def kinetic_energy(beam: Beam, grid: Grid, now: int, u_mid: float) -> float:
 
 
 @vectorised
-def _kinetic_sum(w: Array, now: int, u: Array, plastic: Array, grid: Grid, u_mid: float) -> float:
+def _kinetic_sum(
+    w: Array, now: int, u: Array, plastic: Array, grid: BeamGrid, u_mid: float
+) -> float:
     half = 0.0
     for i in range(np.uint64(2), np.uint64(grid.mid)):
         beside = w[now, i - ONE] + w[now, i + ONE]
@@ -172,7 +174,7 @@ def _kinetic_sum(w: Array, now: int, u: Array, plastic: Array, grid: Grid, u_mid
 
 
 @compiled
-def bending_energy(beam: Beam, M_0: Array, EI: float, grid: Grid, now: int) -> float:
+def bending_energy(beam: BeamState, M_0: Array, EI: float, grid: BeamGrid, now: int) -> float:
     """Return the energy stored in J above what plastic strains store at zero curvature.
 
     Within the elastic interval, EI kappa^2/2 - M_0 kappa per length.
@@ -181,7 +183,7 @@ def bending_energy(beam: Beam, M_0: Array, EI: float, grid: Grid, now: int) -> f
 
 
 @vectorised
-def _bending_sum(w: Array, now: int, M_0: Array, EI: float, grid: Grid) -> float:
+def _bending_sum(w: Array, now: int, M_0: Array, EI: float, grid: BeamGrid) -> float:
     half, mid = 0.0, grid.mid
     for i in range(np.uint64(2), np.uint64(mid)):
         kappa = (w[now, i - ONE] - 2.0 * w[now, i] + w[now, i + ONE]) * grid.per_dx2

@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.beam import Beam, Grid, mirror
+from impactlab.solver.beam import BeamGrid, BeamState, mirror
 from impactlab.solver.contact.history import Pair
 from impactlab.solver.contact.switch import radius
 from impactlab.solver.jit import compiled
@@ -66,7 +66,7 @@ def wave_share(z: float) -> float:
 
 @compiled
 def spread_over_nodes(
-    beam: Beam, grid: Grid, now: int, F: float, a: float
+    beam: BeamState, grid: BeamGrid, now: int, F: float, a: float
 ) -> tuple[float, float, int]:
     """Spread a force F (N), with which a step was made at mid-span, over the radius a (m).
 

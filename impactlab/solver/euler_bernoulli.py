@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from impactlab.solver.beam import (
-    Grid,
+    BeamGrid,
     bending_energy,
     kinetic_energy,
     move,
@@ -26,13 +26,13 @@ from impactlab.solver.fibre_plasticity import (
     plastic_energy,
 )
 from impactlab.solver.jit import allocating, compiled, inlined
-from impactlab.solver.section import Section
-from impactlab.solver.state import Model, State
+from impactlab.solver.section import FibreSection
+from impactlab.solver.state import BeamModel, State
 from impactlab.solver.types import Array, Record
 
 
 @allocating
-def _make(case: Record, section: Section, grid: Grid) -> Array:
+def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Array:
     """Return the first node that the wave has reached, and that from which on some have yielded."""
     front = np.empty(2, dtype=np.int64)
     front[0], front[1] = grid.mid, grid.mid + 1
@@ -78,10 +78,10 @@ def deflected(state: State, now: int) -> None:
 @compiled
 def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
     ahead, work, pushed = spread_over_nodes(state.beam, state.grid, now, F, a)
-    front, first = state.own, max(state.grid.mid - pushed - 2, 2)
+    front, first = state.extra, max(state.grid.mid - pushed - 2, 2)
     if first < front[0]:
         front[0] = first
     return ahead, -work
 
 
-MODEL = Model(_make, _step, _curvature, _energy, deflected, _spread)
+MODEL = BeamModel(_make, _step, _curvature, _energy, deflected, _spread)

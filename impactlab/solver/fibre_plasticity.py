@@ -16,11 +16,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from impactlab.solver.beam import Beam, Grid
+from impactlab.solver.beam import BeamGrid, BeamState
 from impactlab.solver.jit import allocating, compiled, vectorised
 from impactlab.solver.section import (
     FAR,
-    Section,
+    FibreSection,
     bend,
     bend_at_rate,
     dissipated_energy,
@@ -53,7 +53,7 @@ class PlasticState(NamedTuple):
 
 
 @allocating
-def make_plastic_state(grid: Grid, section: Section) -> PlasticState:
+def make_plastic_state(grid: BeamGrid, section: FibreSection) -> PlasticState:
     """Return the state of sections that have never yielded."""
     size, fibres = grid.mid + 3, section.z.size
     return PlasticState(
@@ -69,7 +69,7 @@ def make_plastic_state(grid: Grid, section: Section) -> PlasticState:
 
 
 @compiled
-def rest_plastic_state(plastic: PlasticState, section: Section) -> None:
+def rest_plastic_state(plastic: PlasticState, section: FibreSection) -> None:
     """Make the sections ones that have never yielded."""
     for i in range(plastic.M_0.size):
         plastic.M_0[i] = plastic.flowed[i, 0] = plastic.flowed[i, 1] = 0.0
@@ -83,7 +83,7 @@ def rest_plastic_state(plastic: PlasticState, section: Section) -> None:
 
 
 @compiled
-def curvature(w: Array, now: int, psi: Array | None, grid: Grid, i: Index) -> float:
+def curvature(w: Array, now: int, psi: Array | None, grid: BeamGrid, i: Index) -> float:
     """Return kappa in 1/m: w_xx, or psi_x of a beam with its own rotation (timoshenko.py)."""
     if psi is not None:
         return (psi[i] - psi[i - ONE]) / grid.dx
@@ -91,7 +91,7 @@ def curvature(w: Array, now: int, psi: Array | None, grid: Grid, i: Index) -> fl
 
 
 @compiled
-def _add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: Grid) -> None:
+def _add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: BeamGrid) -> None:
     """Change M_0 of section i by so much (N m), and `plastic` with it."""
     share = grid.factor * change
     M_0[i] += change
@@ -110,7 +110,7 @@ def follow_tangents(
     M_0: Array,
     on_tangent: Array,
     tangent: Array,
-    grid: Grid,
+    grid: BeamGrid,
 ) -> int:
     """Bend the sections on a tangent; return how many have come to its end.
 
@@ -132,12 +132,12 @@ def follow_tangents(
 
 @compiled
 def leave_tangents(
-    beam: Beam,
+    beam: BeamState,
     now: int,
     psi: Array | None,
     plastic_state: PlasticState,
-    section: Section,
-    grid: Grid,
+    section: FibreSection,
+    grid: BeamGrid,
 ) -> None:
     """Bend the sections that follow_tangents has left."""
     k = np.uint64(1)
@@ -163,13 +163,13 @@ def leave_tangents(
 
 @compiled
 def begin_tangents(
-    beam: Beam,
+    beam: BeamState,
     now: int,
     psi: Array | None,
     outside: float,
     plastic_state: PlasticState,
-    section: Section,
-    grid: Grid,
+    section: FibreSection,
+    grid: BeamGrid,
     u: Array,
     w: Array,
 ) -> int:
@@ -197,7 +197,7 @@ def begin_tangents(
 @compiled
 def flow(
     plastic_state: PlasticState,
-    section: Section,
+    section: FibreSection,
     rate: CowperSymonds,
     i: Index,
     kappa: float,
@@ -221,11 +221,11 @@ def flow(
 
 @compiled
 def _yield(
-    beam: Beam,
+    beam: BeamState,
     plastic_state: PlasticState,
-    section: Section,
+    section: FibreSection,
     rate: CowperSymonds | None,
-    grid: Grid,
+    grid: BeamGrid,
     i: Index,
     kappa: float,
 ) -> None:
@@ -244,7 +244,12 @@ def _yield(
 
 @compiled
 def _begin_tangent(
-    beam: Beam, plastic_state: PlasticState, section: Section, grid: Grid, i: Index, kappa: float
+    beam: BeamState,
+    plastic_state: PlasticState,
+    section: FibreSection,
+    grid: BeamGrid,
+    i: Index,
+    kappa: float,
 ) -> None:
     """Bend section i out of its elastic interval to kappa, where its tangent begins."""
     direction = 1.0 if kappa > plastic_state.kappa_max[i] else -1.0
@@ -259,7 +264,7 @@ def _begin_tangent(
 
 
 @compiled
-def catch_up(plastic_state: PlasticState, section: Section) -> None:
+def catch_up(plastic_state: PlasticState, section: FibreSection) -> None:
     """Bring the fibres of the sections on a tangent up to date."""
     for k in range(ONE, plastic_state.on_tangent[0] + ONE):
         i = plastic_state.on_tangent[k]
@@ -274,7 +279,7 @@ def catch_up(plastic_state: PlasticState, section: Section) -> None:
 
 @compiled
 def plastic_energy(
-    plastic_state: PlasticState, section: Section, grid: Grid
+    plastic_state: PlasticState, section: FibreSection, grid: BeamGrid
 ) -> tuple[float, float]:
     """Return (stored at zero curvature, dissipated) energy in J, of fibres that are up to date."""
     stored, dissipated = 0.0, 0.0
@@ -291,7 +296,7 @@ def plastic_energy(
 
 @vectorised
 def plastic_energies(
-    section: Section, plastic_strain: Array, peeq: Array, i: int
+    section: FibreSection, plastic_strain: Array, peeq: Array, i: int
 ) -> tuple[float, float]:
     """Return (stored at zero curvature, dissipated) energy per length of section i, J/m."""
     stored, dissipated, moduli = 0.0, 0.0, section.moduli

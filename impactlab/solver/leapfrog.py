@@ -23,7 +23,7 @@ from impactlab.solver import (
     strip,
     timoshenko,
 )
-from impactlab.solver.beam import Beam, make_beam, make_grid, rest_beam
+from impactlab.solver.beam import BeamState, make_beam, make_grid, rest_beam
 from impactlab.solver.contact import history as contact_history
 from impactlab.solver.contact import prestress
 from impactlab.solver.contact.history import make_pair
@@ -37,9 +37,9 @@ from impactlab.solver.fibre_plasticity import (
 )
 from impactlab.solver.jit import allocating, compiled, inlined
 from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE
-from impactlab.solver.section import Rule, Section, cut_section, make_rule, with_rate
+from impactlab.solver.section import FibreSection, Rule, cut_section, make_rule, with_rate
 from impactlab.solver.stability import discretise
-from impactlab.solver.state import Flight, Model, State
+from impactlab.solver.state import BeamModel, Flight, State
 from impactlab.solver.types import CONTACT_PATCH, MODAL, Array, Record
 
 _AUDITS = 500
@@ -110,7 +110,7 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
     return fly
 
 
-def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C901 one loop
+def _time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:  # noqa: C901 one loop
     """Return the time loop of a model of the beam; extended: see _kernel."""
     _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride, flight, _ = model[:9]
     sag, beneath, lift, moments = model.sag, model.beneath, model.lift, model.moments
@@ -131,7 +131,7 @@ def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C90
 
         After a step, of its beginning. sphere: its displacement (m), velocity before and after the
         step (m/s), approach (m). u_mid (m): u at mid-span before the step. excess (J): see
-        Model.spread.
+        BeamModel.spread.
         """
         w_s, v_before, v_after, approach = sphere
         start = 0.5 * case.sphere_mass * case.velocity**2
@@ -229,7 +229,7 @@ def _time_loop(model: Model, extended: bool) -> Callable[..., int]:  # noqa: C90
 
 
 @allocating
-def _section_at_rate(case: Record, rule: Rule) -> Section:
+def _section_at_rate(case: Record, rule: Rule) -> FibreSection:
     return with_rate(cut_section(case, rule), case)
 
 
@@ -247,7 +247,7 @@ def _end_of_alike(cases: Array, start: int) -> int:
 
 @compiled
 def _keep_profiles(
-    beam: Beam,
+    beam: BeamState,
     plastic: PlasticState,
     now: int,
     r: int,
@@ -264,7 +264,7 @@ def _keep_profiles(
             peeq[r, i, j] = plastic.peeq[i + 1, j]
 
 
-def _run(model: Model, extended: bool) -> Callable[..., int]:
+def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
     """Return a function that solves a case; extended: see _kernel."""
     march, lift = _time_loop(model, extended), model.lift
     largest_deflection = None if model.flight is None else model.flight.largest
@@ -303,7 +303,7 @@ def _run(model: Model, extended: bool) -> Callable[..., int]:
     return run
 
 
-def _kernel(name: str, model: Model, extended: bool = False) -> Callable[..., None]:
+def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[..., None]:
     """Return the kernel of a model of the beam.
 
     extended: with a load over the contact patch, strain rate, bending across the width and stress
@@ -339,17 +339,17 @@ def _kernel(name: str, model: Model, extended: bool = False) -> Callable[..., No
             rule, size = make_rule(first), make_grid(first.nodes // 2, 1.0, 1.0, 1.0, 1.0)
             section = cut(first, rule)
             beam, plastic = make_beam(size), make_plastic_state(size, section)
-            own = make(first, section, size)
+            extra = make(first, section, size)
             for r in range(start, stop):
                 case, pair, section = cases[r], make_pair(cases[r]), cut(cases[r], rule)
                 grid, steps = discretise(case, pair, section)
                 rest_beam(beam)
                 rest_plastic_state(plastic, section)
                 if renew is not None:
-                    renew(own, section, grid)
+                    renew(extra, section, grid)
                 else:
-                    own = make(case, section, grid)
-                state = State(pair, section, grid, beam, plastic, own)
+                    extra = make(case, section, grid)
+                state = State(pair, section, grid, beam, plastic, extra)
                 now = run(case, answers[r], contacts[r], events[r], samples[r], state, steps)
                 if now < 0:
                     samples[r] = np.nan

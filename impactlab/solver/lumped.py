@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver.beam import Grid, mirror
+from impactlab.solver.beam import BeamGrid, mirror
 from impactlab.solver.euler_bernoulli import MODEL as EULER_BERNOULLI
 from impactlab.solver.euler_bernoulli import deflected
 from impactlab.solver.jit import allocating, compiled, inlined
-from impactlab.solver.section import Section
-from impactlab.solver.state import Model, State
+from impactlab.solver.section import FibreSection
+from impactlab.solver.state import BeamModel, State
 from impactlab.solver.types import RIGID, Array, Record
 
 
@@ -39,7 +39,7 @@ def mid_span(case: Record, EI: float) -> tuple[float, float]:
 
 
 @allocating
-def _make(case: Record, section: Section, grid: Grid) -> Lumped:
+def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Lumped:
     """Return the model of a case's beam.
 
     The static shape is that of finite differences: curvature linear in the distance.
@@ -59,7 +59,7 @@ def _make(case: Record, section: Section, grid: Grid) -> Lumped:
 
 @inlined
 def _step(state: State, now: int, F: float) -> None:
-    beam, lumped, mid = state.beam, state.own, state.grid.mid
+    beam, lumped, mid = state.beam, state.extra, state.grid.mid
     if lumped.mass > 0.0:
         pull = F - lumped.stiffness * beam.w[now, mid]
         beam.du[mid] = state.grid.dt**2 / lumped.mass * pull
@@ -74,7 +74,7 @@ def _step(state: State, now: int, F: float) -> None:
 @compiled
 def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     """Return kinetic (see beam.py) and elastic energy."""
-    beam, lumped, mid = state.beam, state.own, state.grid.mid
+    beam, lumped, mid = state.beam, state.extra, state.grid.mid
     u, w = beam.u[mid], beam.w[now, mid]
     moving = lumped.mass * u * (u - beam.du[mid]) / state.grid.dt**2
     return 0.5 * (moving + lumped.stiffness * w * w)
@@ -86,4 +86,4 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
     return 0.0, 0.0
 
 
-MODEL = Model(_make, _step, EULER_BERNOULLI.curvature, _energy, deflected, _spread)
+MODEL = BeamModel(_make, _step, EULER_BERNOULLI.curvature, _energy, deflected, _spread)

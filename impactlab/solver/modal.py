@@ -31,7 +31,7 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.beam import Grid
+from impactlab.solver.beam import BeamGrid
 from impactlab.solver.contact_patch import wave_share
 from impactlab.solver.fibre_plasticity import PlasticState, flow, plastic_energy
 from impactlab.solver.flight import (
@@ -64,8 +64,8 @@ from impactlab.solver.modes import (
     move_modes,
     rest_modes,
 )
-from impactlab.solver.section import Section, bend
-from impactlab.solver.state import Flight, Model, State
+from impactlab.solver.section import FibreSection, bend
+from impactlab.solver.state import BeamModel, Flight, State
 from impactlab.solver.strain_rate import CowperSymonds
 from impactlab.solver.types import Record
 
@@ -97,7 +97,7 @@ def _look_at_all(modes: Modes, plastic: PlasticState, mid: int) -> None:
 @compiled
 def _bend(
     plastic: PlasticState,
-    section: Section,
+    section: FibreSection,
     rate: CowperSymonds | None,
     i: int,
     kappa: float,
@@ -113,7 +113,9 @@ def _bend(
 
 
 @inlined
-def bend_sections(modes: Modes, plastic: PlasticState, section: Section, grid: Grid) -> None:
+def bend_sections(
+    modes: Modes, plastic: PlasticState, section: FibreSection, grid: BeamGrid
+) -> None:
     """Bend the sections that yield, and bring their moments to the modes."""
     if modes.slack[1] >= modes.slack[0]:
         _look_at_all(modes, plastic, grid.mid)
@@ -129,21 +131,21 @@ def bend_sections(modes: Modes, plastic: PlasticState, section: Section, grid: G
 
 
 @allocating
-def _make(case: Record, section: Section, grid: Grid) -> Modes:
+def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Modes:
     return make_modes(case.nodes // 2, grid, section.stiffness, section.yield_curvature)
 
 
 @compiled
-def _renew(modes: Modes, section: Section, grid: Grid) -> None:
+def _renew(modes: Modes, section: FibreSection, grid: BeamGrid) -> None:
     rest_modes(modes, grid, section.stiffness, section.yield_curvature)
 
 
 @inlined
 def _step(state: State, now: int, F: float) -> None:
-    q, u, k2, D, push, source, _, seen, near, slack, _, leaps = state.own
+    q, u, k2, D, push, source, _, seen, near, slack, _, leaps = state.extra
     w, mid = state.beam.w, state.grid.mid
     if near[0] > 0 or slack[1] >= slack[0]:
-        bend_sections(state.own, state.plastic, state.section, state.grid)
+        bend_sections(state.extra, state.plastic, state.section, state.grid)
     w[1 - now, mid] = move_modes(q, u, D, push, source, k2, seen, slack, F)
     state.beam.u[mid] = w[1 - now, mid] - w[now, mid]
     if F > 0.0:
@@ -152,24 +154,24 @@ def _step(state: State, now: int, F: float) -> None:
 
 @compiled
 def _curvature(state: State, now: int) -> float:
-    return mode_curvature(state.own.q, state.own.bent, state.grid.mid)
+    return mode_curvature(state.extra.q, state.extra.bent, state.grid.mid)
 
 
 @inlined
 def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
-    q, u, _, D, push, source = state.own[:6]
+    q, u, _, D, push, source = state.extra[:6]
     return stored + dissipated + modal_energy(q, u, D, push, source, F)
 
 
 @compiled
 def _deflect(state: State, now: int) -> None:
-    deflect(state.own, state.beam.w, now, state.grid.mid)
+    deflect(state.extra, state.beam.w, now, state.grid.mid)
 
 
 @compiled
 def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
-    q, u, k2, push = state.own.q, state.own.u, state.own.k2, state.own.push
+    q, u, k2, push = state.extra.q, state.extra.u, state.extra.k2, state.extra.push
     w, mean, moved, change = state.beam.w[1 - now], 0.0, 0.0, 0.0
     for p in range(q.size):
         share = wave_share(math.sqrt(k2[p]) * a)
@@ -178,15 +180,15 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
         q[p] -= back
         moved += u[p]
         mean += share * u[p]
-        change += k2[p] * abs(q[p] - state.own.seen[p])
-    state.own.slack[1] = change
+        change += k2[p] * abs(q[p] - state.extra.seen[p])
+    state.extra.slack[1] = change
     w[state.grid.mid] += moved - state.beam.u[state.grid.mid]
     state.beam.u[state.grid.mid] = moved
     return mean - moved, 0.5 * F * (moved - mean)
 
 
 @inlined
-def _begin_flight(modes: Modes, plastic: PlasticState, EI: float, grid: Grid) -> None:
+def _begin_flight(modes: Modes, plastic: PlasticState, EI: float, grid: BeamGrid) -> None:
     """Bound the free motion from here on, and list the sections that could yield in it.
 
     A simply supported beam at rest without a force has no moment: its curvature is M_0/EI.
@@ -250,7 +252,7 @@ def _leap(
     gap (m): between sphere and beam. sphere: its last step, and how much each grows by (m).
     w_max (m): the largest deflection so far. room: the most steps.
     """
-    modes, beam, mid = state.own, state.beam, state.grid.mid
+    modes, beam, mid = state.extra, state.beam, state.grid.mid
     leaps, memory = modes.leaps, modes.leaps.memory
     if memory[WAIT] > 0:
         memory[WAIT] -= 1
@@ -295,18 +297,18 @@ def _leap(
 @compiled
 def _retrace(state: State) -> tuple[float, float]:
     """Make a step of the last leap once more; return deflection and curvature of mid-span."""
-    leaps = state.own.leaps
+    leaps = state.extra.leaps
     q, u = leaps.trial[0], leaps.trial[1]
-    w, _ = leap_modes(q, u, state.own.D, leaps.rest, leaps.D, leaps.S, 0, q, u)
-    return w, mode_curvature(q, state.own.bent, state.grid.mid)
+    w, _ = leap_modes(q, u, state.extra.D, leaps.rest, leaps.D, leaps.S, 0, q, u)
+    return w, mode_curvature(q, state.extra.bent, state.grid.mid)
 
 
 @inlined
 def _largest(state: State, w_max: float) -> float:
-    return largest_deflection(state.own.leaps, state.own.D, w_max)
+    return largest_deflection(state.extra.leaps, state.extra.D, w_max)
 
 
-MODEL = Model(
+MODEL = BeamModel(
     _make,
     _step,
     _curvature,

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver.beam import Grid
+from impactlab.solver.beam import BeamGrid
 from impactlab.solver.flight import Leaps, make_leaps, rest_leaps
 from impactlab.solver.jit import allocating, compiled, fused, vectorised
 from impactlab.solver.types import Array
@@ -44,7 +44,7 @@ class Modes(NamedTuple):
 
 
 @allocating
-def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
+def make_modes(n: int, grid: BeamGrid, EI: float, yield_curvature: float) -> Modes:
     """Return the modes of a half beam of n spacings, at rest."""
     cosine = np.zeros(4 * n)
     for i in range(n):
@@ -71,7 +71,7 @@ def make_modes(n: int, grid: Grid, EI: float, yield_curvature: float) -> Modes:
 
 
 @compiled
-def rest_modes(modes: Modes, grid: Grid, EI: float, yield_curvature: float) -> None:
+def rest_modes(modes: Modes, grid: BeamGrid, EI: float, yield_curvature: float) -> None:
     """Make the modes those of another half beam of as many spacings, at rest."""
     n, speed = modes.q.size - 1, grid.dt * math.sqrt(EI / grid.mu)
     length = n * grid.dx

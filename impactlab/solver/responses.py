@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from impactlab.solver.beam import Grid
+from impactlab.solver.beam import BeamGrid
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.finite_element import (
     LARGEST_CIRCLE,
@@ -129,7 +129,7 @@ def read_rebound(answer: Record, case: Record, events: Record) -> None:
 
 @compiled
 def read_beam(
-    answer: Record, case: Record, events: Record, peeq: Array, grid: Grid, dissipated: float
+    answer: Record, case: Record, events: Record, peeq: Array, grid: BeamGrid, dissipated: float
 ) -> None:
     """Fill in deflection and plastic strain; peeq: of the half beam, see PlasticState."""
     if events.w > events.w_max:

@@ -47,7 +47,7 @@ class Moduli(NamedTuple):
     H_k: float
 
 
-class Section(NamedTuple):
+class FibreSection(NamedTuple):
     """The rule's fibres and their material, for one run.
 
     z: distance from the axis, m, outermost first; area: twice B times the rule's weight, m2;
@@ -68,7 +68,7 @@ class Section(NamedTuple):
 class Rule(NamedTuple):
     """An integration rule, and room for the section of a run, all of shape (P // 2,).
 
-    position, weight: see upper_half. z, area, lever: see Section.
+    position, weight: see upper_half. z, area, lever: see FibreSection.
     """
 
     position: Array
@@ -138,13 +138,13 @@ def make_rule(case: Record) -> Rule:
 
 
 @allocating
-def make_section(case: Record) -> Section:
+def make_section(case: Record) -> FibreSection:
     """Return the section of a case."""
     return cut_section(case, make_rule(case))
 
 
 @allocating
-def cut_section(case: Record, rule: Rule) -> Section:
+def cut_section(case: Record, rule: Rule) -> FibreSection:
     """Return the section of a case; it uses the rule's room."""
     E, stiffness, (position, weight, z, area, lever) = case.beam_youngs_modulus, 0.0, rule
     for j in range(z.size):
@@ -152,7 +152,7 @@ def cut_section(case: Record, rule: Rule) -> Section:
         area[j] = weight[j] * (case.beam_depth * case.beam_width)
         lever[j] = E * area[j] * z[j]
         stiffness += E * area[j] * z[j] * z[j]
-    return Section(
+    return FibreSection(
         z,
         area,
         lever,
@@ -169,9 +169,9 @@ def cut_section(case: Record, rule: Rule) -> Section:
 
 
 @allocating
-def with_rate(section: Section, case: Record) -> Section:
+def with_rate(section: FibreSection, case: Record) -> FibreSection:
     """Return the section with the case's law of the strain rate."""
-    return Section(
+    return FibreSection(
         section.z,
         section.area,
         section.lever,
@@ -220,7 +220,7 @@ def dissipated_energy(peeq: float, S_y: float, H_i: float) -> float:
 
 @vectorised
 def bend(
-    section: Section, kappa: float, plastic_strain: Array, peeq: Array, i: int
+    section: FibreSection, kappa: float, plastic_strain: Array, peeq: Array, i: int
 ) -> tuple[float, float, float]:
     """Take the fibres of section i to curvature kappa (1/m).
 
@@ -243,7 +243,7 @@ def bend(
 
 @compiled
 def bend_at_rate(
-    section: Section,
+    section: FibreSection,
     rate: CowperSymonds,
     kappa: float,
     before: float,
@@ -279,7 +279,12 @@ def bend_at_rate(
 
 @compiled
 def tangent(
-    section: Section, kappa: float, direction: float, plastic_strain: Array, peeq: Array, i: int
+    section: FibreSection,
+    kappa: float,
+    direction: float,
+    plastic_strain: Array,
+    peeq: Array,
+    i: int,
 ) -> tuple[float, float]:
     """Return (growth of M_0 with kappa in N m2, curvature in 1/m at which a further fibre yields).
 

@@ -19,13 +19,13 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.beam import Grid, make_grid
+from impactlab.solver.beam import BeamGrid, make_grid
 from impactlab.solver.contact.history import PANELS, Pair, loading_work
 from impactlab.solver.contact.switch import curve
 from impactlab.solver.jit import compiled
 from impactlab.solver.lumped import mid_span
 from impactlab.solver.responses import LARGEST_COMPLIANCE
-from impactlab.solver.section import Section
+from impactlab.solver.section import FibreSection
 from impactlab.solver.strip import across_width
 from impactlab.solver.timoshenko import shear_stiffness
 from impactlab.solver.types import MODAL, SPRING_MASS, TIMOSHENKO, Record
@@ -121,7 +121,7 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
 
 
 @compiled
-def discretise(case: Record, pair: Pair, section: Section) -> tuple[Grid, int]:
+def discretise(case: Record, pair: Pair, section: FibreSection) -> tuple[BeamGrid, int]:
     """Return (grid, number of time steps) of a case."""
     dx = case.beam_span / (case.nodes - 1)
     dt = case.courant * largest_time_step(case, pair, section.stiffness, dx)

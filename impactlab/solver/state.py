@@ -5,24 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from impactlab.solver.beam import Beam, Grid
+from impactlab.solver.beam import BeamGrid, BeamState
 from impactlab.solver.contact.history import Pair
 from impactlab.solver.fibre_plasticity import PlasticState
-from impactlab.solver.section import Section
+from impactlab.solver.section import FibreSection
 
 
 class State(NamedTuple):
     """The state that a run marches: contact pair, section and grid, and the beam.
 
-    own: what the model of the beam has besides; its type is the model's.
+    extra: the further state of the model of the beam, in a type of its own.
     """
 
     pair: Pair
-    section: Section
-    grid: Grid
-    beam: Beam
+    section: FibreSection
+    grid: BeamGrid
+    beam: BeamState
     plastic: PlasticState
-    own: Any
+    extra: Any
 
 
 class Flight(NamedTuple):
@@ -39,11 +39,11 @@ class Flight(NamedTuple):
     largest: Callable[..., float]
 
 
-class Model(NamedTuple):
+class BeamModel(NamedTuple):
     """A model of the beam in one scheme: compiled functions, from which leapfrog.py makes a kernel.
 
-    make(case, section, grid): State.own at rest. renew(own, section, grid): put it back to rest,
-    for another case of as many nodes; None: it is made anew. step(state, now, F): move the beam
+    make(case, section, grid): State.extra at rest. renew(extra, section, grid): put it back to
+    rest, for another case of as many nodes; None: `make` does. step(state, now, F): move the beam
     under the contact force F (N). curvature(state, now): at mid-span, 1/m. energy(state, now, F,
     u_mid): the beam's in J, plastic strains' included, after a step, at its beginning; u_mid: u at
     mid-span before it (m). deflect(state, now): set all of beam.w[now] in the end. spread(state,

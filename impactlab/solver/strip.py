@@ -33,18 +33,18 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver import timoshenko
-from impactlab.solver.beam import Grid
+from impactlab.solver.beam import BeamGrid
 from impactlab.solver.contact.axis_lift import axis_lift
 from impactlab.solver.fibre_plasticity import curvature, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, vectorised
-from impactlab.solver.section import Section
+from impactlab.solver.section import FibreSection
 from impactlab.solver.state import State
 from impactlab.solver.timoshenko import Shear
 from impactlab.solver.types import ONE, Array, Record
 
 
 class Strip(NamedTuple):
-    """The state of a strip besides Beam; all arrays (n + 4,), at nodes.
+    """The state of a strip besides BeamState; all arrays (n + 4,), at nodes.
 
     inertia: m (kg m3), 0 where nothing bends across; stiffness = D B (N m2); twist = T (N m4);
     lever = B^2/24 (m2). axis (m/N, m2): how much lower than the middle of the section the axis
@@ -76,7 +76,7 @@ def across_width(case: Record) -> tuple[float, float, float]:
 
 
 @allocating
-def _make(case: Record, section: Section, grid: Grid) -> Strip:
+def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Strip:
     """Return the state at rest."""
     shear, size = timoshenko.make(case, section, grid), grid.mid + 3
     DB, twist, lever = across_width(case)
@@ -139,7 +139,7 @@ def _swing(strip: Strip, push: float, per_dx: float, F: float, mid: int) -> None
 
 
 @vectorised
-def _width_energy(strip: Strip, grid: Grid) -> float:
+def _width_energy(strip: Strip, grid: BeamGrid) -> float:
     """Return kinetic and elastic energy (J) of s after a step, at its beginning."""
     s, rate, d_rate, bent, mid = strip.s, strip.rate, strip.d_rate, strip.bent, grid.mid
     moved, bending, twisted = 0.0, 0.0, 0.0
@@ -157,7 +157,7 @@ def _width_energy(strip: Strip, grid: Grid) -> float:
 
 @compiled
 def _curvature(state: State, now: int) -> float:
-    psi, grid = state.own.shear.psi, state.grid
+    psi, grid = state.extra.shear.psi, state.grid
     return curvature(state.beam.w, now, psi, grid, np.uint64(grid.mid))
 
 
@@ -174,19 +174,19 @@ def _energy(state: State, now: int, F: float, u_mid: float) -> float:
 
 @compiled
 def _sag(state: State) -> float:
-    return -state.own.lever * state.own.s[state.grid.mid]
+    return -state.extra.lever * state.extra.s[state.grid.mid]
 
 
 @compiled
 def _beneath(state: State, now: int, F: float) -> float:
-    c, gamma = state.own.axis
+    c, gamma = state.extra.axis
     elastic = state.plastic.M_0[state.grid.mid] / state.section.stiffness - _curvature(state, now)
     return float(c * F + gamma * elastic)
 
 
 @compiled
 def _lift(state: State, contact: Record, F: float) -> float:
-    strip = state.own
+    strip = state.extra
     if strip.inertia == 0.0:
         return 0.0
     return axis_lift(contact, state.pair, F, *strip.lifting)
@@ -194,7 +194,7 @@ def _lift(state: State, contact: Record, F: float) -> float:
 
 @compiled
 def _moments(state: State, now: int) -> tuple[float, float]:
-    strip, section, mid = state.own, state.section, state.grid.mid
+    strip, section, mid = state.extra, state.section, state.grid.mid
     kappa = _curvature(state, now)
     across = 0.0
     if strip.inertia > 0.0:

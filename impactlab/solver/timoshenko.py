@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver.beam import Beam, Grid, mirror
+from impactlab.solver.beam import BeamGrid, BeamState, mirror
 from impactlab.solver.contact_patch import spread_over_nodes
 from impactlab.solver.euler_bernoulli import deflected
 from impactlab.solver.fibre_plasticity import (
@@ -24,13 +24,13 @@ from impactlab.solver.fibre_plasticity import (
     plastic_energy,
 )
 from impactlab.solver.jit import allocating, compiled, inlined, vectorised
-from impactlab.solver.section import Section
-from impactlab.solver.state import Model, State
+from impactlab.solver.section import FibreSection
+from impactlab.solver.state import BeamModel, State
 from impactlab.solver.types import ONE, Array, Record
 
 
 class Shear(NamedTuple):
-    """The state of a Timoshenko beam besides Beam; all arrays (n + 4,).
+    """The state of a Timoshenko beam besides BeamState; all arrays (n + 4,).
 
     stiffness = k G A (N); inertia = rho I (kg m). psi: rotation, spin = dt psi_t its increment,
     d_spin the last change of that (rad), Q (N): half-way from node i to i + 1 at index i. M (N m):
@@ -54,7 +54,7 @@ def shear_stiffness(case: Record) -> float:
 
 
 @allocating
-def make(case: Record, section: Section, grid: Grid) -> Shear:
+def make(case: Record, section: FibreSection, grid: BeamGrid) -> Shear:
     """Return the state at rest."""
     area, size = case.beam_width * case.beam_depth, grid.mid + 3
     return Shear(
@@ -70,7 +70,12 @@ def make(case: Record, section: Section, grid: Grid) -> Shear:
 
 @inlined
 def bend_sections(
-    section: Section, grid: Grid, beam: Beam, plastic: PlasticState, shear: Shear, now: int
+    section: FibreSection,
+    grid: BeamGrid,
+    beam: BeamState,
+    plastic: PlasticState,
+    shear: Shear,
+    now: int,
 ) -> float:
     """Set the moments of the fibres where a step begins; return 1/dx."""
     psi, mid = shear.psi, grid.mid
@@ -87,7 +92,7 @@ def bend_sections(
 
 
 @inlined
-def move(grid: Grid, beam: Beam, shear: Shear, now: int, F: float, per_dx: float) -> None:
+def move(grid: BeamGrid, beam: BeamState, shear: Shear, now: int, F: float, per_dx: float) -> None:
     """Move rotation and deflection by one step, under the moments and the contact force F (N)."""
     psi, Q, mid = shear.psi, shear.Q, grid.mid
     _rotate(beam.w, now, shear, grid.dt**2 / shear.inertia, per_dx, mid)
@@ -145,7 +150,7 @@ def _shift(
 
 
 @vectorised
-def shear_energy(beam: Beam, shear: Shear, M_0: Array, EI: float, grid: Grid) -> float:
+def shear_energy(beam: BeamState, shear: Shear, M_0: Array, EI: float, grid: BeamGrid) -> float:
     """Return the beam's energy in J after a step, at its beginning, without plastic strains'.
 
     Kinetic as in beam.py, of deflection and rotation; elastic of bending (see there) and shear.
@@ -166,14 +171,14 @@ def shear_energy(beam: Beam, shear: Shear, M_0: Array, EI: float, grid: Grid) ->
 
 @compiled
 def _curvature(state: State, now: int) -> float:
-    return curvature(state.beam.w, now, state.own.psi, state.grid, np.uint64(state.grid.mid))
+    return curvature(state.beam.w, now, state.extra.psi, state.grid, np.uint64(state.grid.mid))
 
 
 @compiled
 def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
     EI = state.section.stiffness
-    elastic = shear_energy(state.beam, state.own, state.plastic.M_0, EI, state.grid)
+    elastic = shear_energy(state.beam, state.extra, state.plastic.M_0, EI, state.grid)
     return stored + dissipated + elastic
 
 
@@ -183,4 +188,4 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
     return ahead, 0.0
 
 
-MODEL = Model(make, _step, _curvature, _energy, deflected, _spread)
+MODEL = BeamModel(make, _step, _curvature, _energy, deflected, _spread)

@@ -32,7 +32,7 @@ GridKey = tuple[str, int]  # scheme and nodes
 
 
 @dataclass(frozen=True)
-class Refinement:
+class GridFamily:
     """Numbers of nodes that a scheme is tried with, from coarse to fine.
 
     tolerances: of each history at `middle` nodes; they fall with the square of the nodes up to the
@@ -47,12 +47,12 @@ class Refinement:
     pair: tuple[int, int]
 
 
-LEAPFROG = Refinement(
+LEAPFROG = GridFamily(
     "leapfrog", (51, 101, 201, 401, 801), 201, (1e-3, 1e-3, 1e-2), (2.0, 2.0, 2.0), (401, 801)
 )
 """Under a point load curvature goes with the rate of deflection: it holds ten times as much of the
 high frequencies, whose waves the nodes resolve worst."""
-MODAL = Refinement("modal", (9, 17, 33, 65, 129), 65, (2e-3, 1e-3, 1e-3), (2.0, 2.0, 1.0), (33, 65))
+MODAL = GridFamily("modal", (9, 17, 33, 65, 129), 65, (2e-3, 1e-3, 1e-3), (2.0, 2.0, 1.0), (33, 65))
 """It must meet leapfrog's tolerances from a third of the nodes, but twice that of the force, which
 its longer steps round off where the contact ends. What is left of its errors is of the second order
 of the time step, which goes with dx. The n-th mode bends statically by 1/n^4 under the force: the n
@@ -65,7 +65,7 @@ def _finding(
     cases: Mapping[str, Sweep],
     solve: Callable[[Impact, float], ModalSolution],
     rivals: Mapping[str, ModalSolution],
-    schemes: Sequence[Refinement],
+    schemes: Sequence[GridFamily],
 ) -> Finding:
     """Compare histories on the middle and the finest grid, and the order in which errors fall.
 
@@ -101,7 +101,7 @@ def _run(impact: Impact, key: GridKey, duration: float) -> xr.Dataset:
 
 
 def _compare(
-    where: str, grids: Refinement, runs: Mapping[GridKey, xr.Dataset], series: ModalSolution
+    where: str, grids: GridFamily, runs: Mapping[GridKey, xr.Dataset], series: ModalSolution
 ) -> list[Comparison]:
     """Compare one impact: histories on two grids, responses on the middle one, and orders."""
     middle, finest = (runs[grids.scheme, nodes] for nodes in (grids.middle, grids.nodes[-1]))
@@ -119,7 +119,7 @@ def _compare(
 
 
 def _histories(
-    where: str, grids: Refinement, run: xr.Dataset, series: ModalSolution
+    where: str, grids: GridFamily, run: xr.Dataset, series: ModalSolution
 ) -> Comparisons:
     nodes, time = run.nodes.item(), run.time.values
     comparisons = Comparisons(f"{where}, {nodes} nodes")
@@ -141,7 +141,7 @@ def error(name: str, series: ModalSolution, run: xr.Dataset) -> float:
 
 def _panels(
     title: str,
-    schemes: Sequence[Refinement],
+    schemes: Sequence[GridFamily],
     runs: Mapping[GridKey, xr.Dataset],
     solutions: Mapping[str, ModalSolution],
 ) -> list[Panel]:

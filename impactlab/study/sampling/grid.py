@@ -47,7 +47,7 @@ class Range(Section, Generic[Q]):
         space = np.geomspace if self.spacing == "log" else np.linspace
         spaced = space(self.start, self.stop, self.number)
         values: list[Value] = [float(f"{value:.12g}") for value in spaced]
-        if not parameter.whole:
+        if not parameter.is_integer:
             return values
         for value in values:
             try:

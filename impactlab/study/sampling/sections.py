@@ -128,7 +128,7 @@ class Sample(Sampling):
                 f"takes words: write {{distribution: choice, values: [{some}]}}, or "
                 "{distribution: fixed, value: ...}"
             )
-        if parameter.whole and given != "fixed":
+        if parameter.is_integer and given != "fixed":
             raise ValueError(
                 "is a whole number and cannot be sampled: vary it in a study with method: grid, "
                 "or write {distribution: fixed, value: ...}"

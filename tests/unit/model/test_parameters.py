@@ -125,4 +125,4 @@ def test_entries_describe_themselves(entry):
     value = OTHERS[entry.name]
     assert bool(entry.choices) == isinstance(value, str)
     assert not entry.choices or value in entry.choices
-    assert entry.whole == isinstance(value, int)
+    assert entry.is_integer == isinstance(value, int)

@@ -30,7 +30,7 @@ def test_a_record_has_every_value_in_its_place(make_case):
     numbers = {
         name: 0.5 + number / 100
         for number, (name, entry) in enumerate(OF_KERNELS.items())
-        if not entry.choices and not entry.whole and "poisson" not in name
+        if not entry.choices and not entry.is_integer and "poisson" not in name
     }
     ratios = {"sphere_poissons_ratio": 0.1, "beam_poissons_ratio": 0.2}
     moduli = {"sphere_youngs_modulus": 1e9, "beam_youngs_modulus": 2e9, "beam_span": 9.0}
