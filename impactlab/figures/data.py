@@ -33,8 +33,8 @@ _POINTS = {
     "low": "lower end of the error bar, along the axis of the value",
     "high": "upper end of the error bar, along the axis of the value",
 }
-_PANELS, _CURVES = 5, 3
-"""Largest numbers of panels, and of curves per panel, that are described one by one."""
+_PANELS, _CURVES, _BARS = 5, 3, 6
+"""Largest numbers of panels, and of curves or kinds of bars per panel, described one by one."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +55,11 @@ class Drawn:
     high: Floats
     category: list[str]
     across: bool = False
+
+    @property
+    def values(self) -> Floats:
+        """The numbers: x where y has names in place of them, else y."""
+        return self.x if any(self.category) and not self.across else self.y
 
 
 def save(figure: Figure, folder: Path, name: str) -> list[Path]:
@@ -117,7 +122,8 @@ def _categories(ax: Panel, series: Series, finite: NDArray[np.bool_]) -> list[st
     if which is None:
         return [""] * int(finite.sum())
     names, places = ax.names[which], np.rint(getattr(series, which)[finite])
-    return [names[int(place)] for place in np.clip(places, 0, len(names) - 1)]
+    places = np.clip(places, 0, len(names) - 1).astype(int)
+    return [" ".join(names[place].split()) for place in places]
 
 
 def _label(figure: Figure, ax: Axes, axis: str) -> str:
@@ -142,8 +148,8 @@ def alt(figure: Figure) -> str:
         panels.add(panel)
         axes = " against ".join(filter(None, (curves[0].y_label, curves[0].x_label)))
         name = axes if panel.startswith("panel ") else panel
-        every = len(curves) <= _CURVES or any(curves[0].category)
-        shown = curves if every else [max(curves, key=lambda curve: float(curve.y.max()))]
+        every = len(curves) <= (_BARS if any(curves[0].category) else _CURVES)
+        shown = curves if every else [max(curves, key=lambda curve: float(curve.values.max()))]
         text = "; ".join(map(_curve, shown))
         described.append(f"{name}: {text if every else f'highest of {len(curves)}: {text}'}.")
     titles = {ax: ax.get_title(loc="left") or "Panel" for ax in figure.axes}
@@ -168,9 +174,8 @@ def alt(figure: Figure) -> str:
 def _curve(curve: Drawn) -> str:
     label = f"{curve.curve}: " if curve.curve else ""
     if any(curve.category):
-        values = curve.y if curve.across else curve.x
-        largest = int(np.argmax(np.abs(values)))
-        value = labels.number(values[largest], 3)
+        largest = int(np.argmax(np.abs(curve.values)))
+        value = labels.number(curve.values[largest], 3)
         return f"{label}largest for {curve.category[largest]} ({value})"
     if curve.x.size == 1:
         return f"{label}{labels.number(curve.x[0], 3)}, {labels.number(curve.y[0], 3)}"

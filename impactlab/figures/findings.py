@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from impactlab.figures import labels, responses_grid, scales, style
 from impactlab.figures.labels import Display, display
+from impactlab.figures.panel import name_places
 from impactlab.types import Floats
 from impactlab.verification.finding import Curve, Outcome, Panel
 
@@ -58,7 +59,7 @@ def plot_overview(outcomes: Sequence[Outcome]) -> Figure:
     limits = 0.6 * float(least), 2.5 * min(max(largest, 4.0), _MOST)
     scales.logarithmic(axes, "x", limits, ticks=8)
     axes.set(xlim=limits, ylim=(len(outcomes) - 0.5, -0.5), xlabel="Error over tolerance (–)")
-    axes.set_yticks(range(len(outcomes)), [fill(outcome.title, _LETTERS) for outcome in outcomes])
+    name_places(axes, "y", [fill(outcome.title, _LETTERS) for outcome in outcomes])
     axes.tick_params(axis="y", length=0)
     axes.grid(visible=False, axis="y")
     for row in range(1, len(outcomes)):
@@ -83,7 +84,7 @@ def _draw_row(axes: Axes, row: int, outcome: Outcome) -> None:
             if not (mask := chosen & where).any():
                 continue
             look = _LOOKS[verdict] | ({"marker": marker} if marker else {})
-            label = f"_{verdict}" if marker else verdict
+            label = f"_data: {verdict}" if marker else verdict
             axes.plot(shown[mask], y[mask], linestyle="", markeredgewidth=0.0, label=label, **look)
     total, failed = len(outcome.finding.comparisons), len(outcome.failures)
     text = f"{failed} of {total} failed" if failed else f"all {total}"

@@ -371,7 +371,7 @@ def _mean(ax: Axes, history: xr.Dataset, time: Display) -> None:
     mean, deviation = history["history_mean"], history["history_deviation"].values
     unit = display(mean.assign_attrs(units=str(history["history_units"].item())))
     x, look = time(history["time"].values), {"color": "0.15", "linewidth": 0.9}
-    _line_with_band(ax, x, unit(mean.values), unit(deviation), label="_mean", **look)
+    _line_with_band(ax, x, unit(mean.values), unit(deviation), label="_data: mean", **look)
     if not ax.lines:
         style.remark(ax, "no finite values")
     ax.set_ylabel(labels.axis("mean", unit.symbol))

@@ -34,8 +34,8 @@ class Panel(Axes):
     """Axes that keep what `plot`, `step`, `errorbar`, `bar`, `barh` and `hist` draw.
 
     Lines without a label, or with one that starts with "_", are guides and are left out; "_only"
-    labels the only curve of a panel, which needs no name. names: of the places 0, 1, ... along "x"
-    or "y", see `name_places`.
+    labels the only curve of a panel, which needs no name, and "_data: LABEL" one that the legend
+    leaves out. names: of the places 0, 1, ... along "x" or "y", see `name_places`.
     """
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
@@ -51,7 +51,7 @@ class Panel(Axes):
 
     def plot(self, *args: Any, **kwargs: Any) -> list[Line2D]:
         """Draw lines; keep x and y of one that is no guide."""
-        label = str(kwargs.get("label") or "_")
+        label = str(kwargs.get("label") or "_").removeprefix("_data: ")
         if len(args) > 1 and (label == "_only" or not label.startswith("_")):
             self._points.append((label, args[0], args[1]))
         return super().plot(*args, **kwargs)

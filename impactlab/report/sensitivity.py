@@ -141,70 +141,51 @@ def _of_sobol(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
             "over-time",
             "Indices over time",
             "A history has indices at each time, and generalised indices: shares of its variance "
-            "added up over all times, so that times at which the runs differ most count most.",
-            [_left_out(analysis, name) for name in histories],
-            [_generalised(analysis, histories, measure) for measure in SOBOL.measures],
-            ["indices_over_time"],
+            "added up over all times, so that times at which the runs differ most count most. A "
+            "base sample is left out where one of its runs failed; there is no index at a time at "
+            "which all runs have one value.",
+            tables=[_generalised(analysis, histories, measure) for measure in SOBOL.measures],
+            figures=["indices_over_time"],
         )
 
 
 def history_entries(analysis: xr.Dataset) -> list[tuple[str, str]]:
     """Return one entry per history: the parameters that matter over all times, or why none."""
     entries: list[tuple[str, str]] = []
+    key = "generalised_total_order"
     for history in measures.histories(analysis):
-        indices = analysis.sel(history=history)
+        indices, names = analysis.sel(history=history), measures.parameters(analysis)
+        total, margin = (indices[name].values for name in (key, f"{key}_interval"))
+        ranked = [i for i in np.argsort(-total, kind="stable") if total[i] > margin[i]][:_NAMED]
+        shares = [f"{labels.parameter(names[i])} {share(total[i], margin[i])}" for i in ranked]
+        text = labels.listing(shares) or "no parameter exceeds its interval"
+        if shares and not entries:
+            text += " of the variance"
+        texts = [text] if np.isfinite(total).any() else []
         verdict = access.read(indices[measures.HISTORY_VERDICT])
-        total, margin = (
-            indices[f"generalised_total_order{end}"].values for end in ("", "_interval")
-        )
-        named = [
-            f"{labels.parameter(name)} {share(total[number], margin[number])}"
-            for number, name in enumerate(measures.parameters(analysis))
-            if total[number] > margin[number]
-        ]
-        ranked = np.argsort(-total[total > margin], kind="stable")[:_NAMED]
-        texts = [
-            labels.listing([named[number] for number in ranked])
-            or "no parameter exceeds its interval"
-        ]
-        if named and not entries:
-            texts[0] += " of the variance"
-        if not np.isfinite(total).any():
-            texts = []
         if not verdict.sound:
             texts.append(verdict.meaning)
         entries.append((f"{labels.sentence(labels.response(history))} over time", "; ".join(texts)))
     return entries
 
 
-def _left_out(analysis: xr.Dataset, history: str) -> str:
-    """Return a sentence on the base samples left out, and on times that have no index."""
-    indices = analysis.sel(history=history)
-    left, times = int(indices["base_samples_left_out"]), indices["time_verdict"]
-    alike = int((times == TimeVerdict.CONSTANT).sum())
-    name, total = labels.sentence(labels.response(history)), int(analysis.attrs["base_samples"])
-    text = f"{name}: {left or 'none'} of {total} base samples left out"
-    if left:
-        text += " because a run of theirs failed"
-    if alike:
-        text += f"; no index at {alike} of {times.size} times, at which all runs have one value"
-    return f"{text}."
-
-
 def _generalised(analysis: xr.Dataset, histories: list[str], measure: Measure) -> Table:
-    """Return one row per history: the generalised index of each parameter, grey within noise."""
+    """Return one row per history: its generalised indices, grey within noise, and the gaps."""
     rows: list[Row] = []
     for history in histories:
         indices, key = analysis.sel(history=history), f"generalised_{measure.name}"
         name = _judged(history, access.read(indices[measures.HISTORY_VERDICT]))
-        cells = (
-            _index(indices.isel(parameter=number), key)
-            for number in range(indices.sizes["parameter"])
+        cells = [_index(indices.sel(parameter=p), key) for p in analysis["parameter"]]
+        constant = int((indices["time_verdict"] == TimeVerdict.CONSTANT).sum())
+        gaps = (
+            f"{int(indices['base_samples_left_out'])} of {int(analysis.attrs['base_samples'])}",
+            f"{constant} of {indices.sizes['time']}",
         )
-        rows.append([name, *cells])
+        rows.append([name, *cells, *(Cell(text, "number") for text in gaps)])
     caption = _caption(f"Generalised Sobol indices, {measure.label}", analysis)
+    head = ["History", *_parameters(analysis), "Base samples left out", "Times without an index"]
     meanings = _meanings(analysis, measures.HISTORY_VERDICT)
-    return Table(caption, ["History", *_parameters(analysis)], rows, meanings=meanings)
+    return Table(caption, head, rows, meanings=meanings)
 
 
 def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
@@ -264,14 +245,12 @@ def _ranks(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
     for name in analysed(runs, analysis):
         index, row = measures.index(analysis, measure.name, name), [named(analysis, name)]
         for number, (best, worst) in enumerate(index.ranks):
+            text = "numerical" if index.numerically_lost[number] else "noise"
             if not np.isfinite(index.values[number]):
-                row.append(Cell("undefined", "muted"))
+                text = "undefined"
             elif index.significant[number]:
-                row.append(Cell(str(best) if best == worst else f"{best}–{worst}", "number"))
-            else:
-                row.append(
-                    Cell("numerical" if index.numerically_lost[number] else "noise", "muted")
-                )
+                text = str(best) if best == worst else f"{best}–{worst}"
+            row.append(Cell(text, "number" if index.significant[number] else "muted"))
         rows.append(row)
     dummy = " or the dummy" if f"dummy_{measure.name}" in analysis else ""
     explained = f"noise: not distinguishable from zero{dummy}"
@@ -309,18 +288,16 @@ def index_tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list
             index = measures.index(analysis, measure.name, name)
             written = partial(in_units, runs[name]) if family is MORRIS else with_margin
             row = [named(analysis, name)]
-            for number, (value, margin) in enumerate(zip(index.values, index.margins, strict=True)):
-                text = written(value, margin)
-                detail = "below numerical error" if index.numerically_lost[number] else ""
-                row.append(Cell(text, "number" if index.significant[number] else "muted", detail))
+            columns = index.values, index.margins, index.significant, index.numerically_lost
+            for value, margin, significant, lost in zip(*columns, strict=True):
+                kind, detail = "number" if significant else "muted", "below numerical error"
+                row.append(Cell(written(value, margin), kind, detail if lost else ""))
             if dummy in analysis:
                 row.append(replace(_index(analysis.sel(response=name), dummy), kind="muted"))
             rows.append(row)
-        head = [
-            "Response",
-            *_parameters(analysis),
-            *(["Dummy parameter"] if dummy in analysis else []),
-        ]
+        head = ["Response", *_parameters(analysis)]
+        if dummy in analysis:
+            head.append("Dummy parameter")
         tables.append(Table(_caption(f"{family.title}, {measure.label}", analysis), head, rows))
     return tables
 

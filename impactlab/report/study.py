@@ -32,7 +32,7 @@ _FAILED_RUNS = 20  # largest number of failed runs listed one by one
 _EACH = "Each response against each parameter"
 _SCATTER = (
     "A line that bends or tilts shows a parameter that matters by itself; points that fan out "
-    "around a flat line show that the parameter matters together with others."
+    "around a flat line hint at a parameter that matters together with others."
 )
 
 

@@ -14,8 +14,8 @@ import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from impactlab.figures import data, style
 from impactlab.figures import findings as drawn
-from impactlab.figures import style
 from impactlab.figures.draw import draw_findings
 from impactlab.verification.finding import Curve, Finding, Panel, gravest_first
 from impactlab.verification.stored import packed
@@ -53,7 +53,7 @@ def test_every_comparison_is_a_point_and_the_failed_ones_look_different(outcomes
     (axes,) = drawn.plot_overview(outcomes).axes
     found = [line for line in axes.lines if line.get_marker() not in ("None", "")]
     assert sum(len(line.get_xdata()) for line in found) == 21
-    failed = [line for line in found if line.get_label() in ("failed", "_failed")]
+    failed = [line for line in found if line.get_label() in ("failed", "_data: failed")]
     assert sum(len(line.get_xdata()) for line in failed) == 3
     assert all(np.min(line.get_xdata()) > 1.0 for line in failed)
     assert {line.get_color() for line in failed} == {style.COLOURS[1]}
@@ -63,6 +63,15 @@ def test_every_comparison_is_a_point_and_the_failed_ones_look_different(outcomes
     assert axes.get_xlim()[1] >= np.max(ends[0].get_xdata())
     said = [text.get_text() for text in axes.texts]
     assert said == ["all 3", "3 of 18 failed", "error", "nothing"]
+
+
+def test_the_data_have_every_comparison_with_its_check(outcomes: Outcomes) -> None:
+    curves = list(data.drawn(drawn.plot_overview(outcomes)))
+    assert sum(curve.x.size for curve in curves) == 21
+    assert sum(curve.x.size for curve in curves if curve.curve == "failed") == 3
+    checks = {name for curve in curves for name in curve.category}
+    assert checks == {outcome.title for outcome in outcomes if outcome.finding.comparisons}
+    assert "largest for A bad check" in data.alt(drawn.plot_overview(outcomes))
 
 
 def test_the_caption_counts_what_lies_at_the_edges(outcomes: Outcomes) -> None:
