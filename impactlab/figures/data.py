@@ -162,8 +162,8 @@ def alt(figure: Figure) -> str:
     ]
     remarks = [  # words in place of data
         f"{title}: {' '.join(ax.texts[0].get_text().split())}."
-        for ax, title in titles.items()
-        if ax.texts and title not in panels and ax not in maps
+        for number, (ax, title) in enumerate(titles.items(), 1)
+        if ax.texts and not panels & {title, f"panel {number}"} and ax not in maps
     ]
     described += [f"{titles[ax]}: {text}." for ax, text in maps.items()] + meshes + remarks
     text = " ".join(described[:_PANELS])

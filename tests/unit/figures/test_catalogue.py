@@ -18,7 +18,7 @@ from matplotlib.text import Text
 
 from impactlab.analysis import distribution
 from impactlab.fem3d.figures.witness import FIGURES
-from impactlab.figures import style
+from impactlab.figures import data, style
 from impactlab.figures.catalogue import CATALOGUE, applicable
 from impactlab.figures.distributions import exceedance
 from impactlab.figures.record import Figure
@@ -186,6 +186,14 @@ def test_a_figure_is_legible_at_paper_width(
     _assert_labels_carry_units(drawn)
     _assert_text_is_large_enough_and_apart(drawn)
     _assert_panels_and_legends_are_on_the_page_and_apart(drawn)
+
+
+def test_the_mean_history_is_data_beside_the_indices(
+    sample_study: tuple[xr.Dataset, xr.Dataset],
+) -> None:
+    curves = data.drawn(CATALOGUE["indices_over_time"].plot(*sample_study))
+    means = [curve.curve for curve in curves if curve.panel.endswith(", mean")]
+    assert means == ["mean"] * sample_study[1].sizes["history"]
 
 
 def _assert_labels_carry_units(drawn: MplFigure) -> None:

@@ -71,7 +71,10 @@ def test_the_data_have_every_comparison_with_its_check(outcomes: Outcomes) -> No
     assert sum(curve.x.size for curve in curves if curve.curve == "failed") == 3
     checks = {name for curve in curves for name in curve.category}
     assert checks == {outcome.title for outcome in outcomes if outcome.finding.comparisons}
-    assert "largest for A bad check" in data.alt(drawn.plot_overview(outcomes))
+    text = data.alt(drawn.plot_overview(outcomes))
+    assert text.startswith("Error over tolerance (–): ")
+    assert "largest for A bad check" in text
+    assert "all 3" not in text  # a note beside data, none in place of them
 
 
 def test_the_caption_counts_what_lies_at_the_edges(outcomes: Outcomes) -> None:
