@@ -47,7 +47,7 @@ def analyse(
     ...         name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}))
     >>> indices = il.analyse(study.run(workers=1))
     >>> indices.total_order.sel(response="value", parameter=["x2", "x3"]).round(1).values
-    array([0.4, 0.2])
+    array([0.5, 0.2])
     """
     if "responses" not in runs.attrs:
         raise ValueError(

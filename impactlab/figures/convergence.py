@@ -18,7 +18,7 @@ from impactlab.figures.access import known, responses, usable
 from impactlab.figures.curves import Choice, Plan, plan
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
-from impactlab.figures.needs import needed
+from impactlab.figures.needs import Needs, needed
 from impactlab.model.cost import node_steps
 from impactlab.model.parameters import REFINEMENTS
 from impactlab.solver import BEAM_MODELS, SCHEMES
@@ -26,14 +26,13 @@ from impactlab.types import Floats
 
 _DIFFERENCE = "Relative difference (–)"
 _FEWEST = 3
-_NAMED = 3  # largest number of cases per response that a caption names
+_NAMED = 3  # largest number of cases that a caption names
 CAPTION = (
     "Difference to the limit, relative to it: Richardson's value, or where there is none that of "
     "the least-squares fit, or else the finest value. Thin dashes: the order p of that limit (in "
     "brackets where it is assumed, not observed). The bar at the finest value reaches up to its "
     "numerical uncertainty; an open marker is this uncertainty where the finest value is itself "
-    "the limit. A verdict is the worst over the whole grid, also over what is not drawn; what has "
-    "no limit by design is drawn as it is."
+    "the limit. What has no limit by design is drawn as it is."
 )
 _BESIDE: dict[str, Any] = {
     "loc": "lower left",
@@ -80,8 +79,8 @@ class Refined:
         """Return a caption's sentences on what converges, is shown, held and missing."""
         names = self.names(runs)
         return (
-            _enough(runs, analysis),
-            _unconverged(runs, analysis, self.name, names),
+            enough(runs, analysis),
+            _verdicts(runs, analysis, self.name, names),
             self.plan(runs).note(runs),
             access.missing_note(runs, names),
         )
@@ -120,10 +119,10 @@ def draw(
     runs: xr.Dataset, analysis: xr.Dataset, axis: Refined, spacing: Floats, label: str
 ) -> Figure:
     """Draw a panel per response over the spacing of the runs, in the unit of the label."""
-    selected = axis.plan(runs)
+    selected, needs = axis.plan(runs), needed(runs, analysis)
     figure, axes = responses_grid.panels(axis.names(runs), height=44)
     for name, ax in axes.items():
-        responses_grid.write_verdict(ax, analysis, f"{axis.name}_summary", name)
+        _write_verdict(ax, needs, axis.name, name)
         found = access.occurring(_of(analysis, f"{axis.name}_verdict", name))
         if any(verdict.flag == "not_convergent_by_design" for verdict in found):
             _draw_values(ax, runs, name, spacing, selected)
@@ -149,6 +148,12 @@ def draw(
     return selected.finish(figure, label, _DIFFERENCE)
 
 
+def _write_verdict(ax: Axes, needs: Needs | None, axis: str, name: str) -> None:
+    """Write the verdict of the finest grid under the panel's title, as tables and answer do."""
+    if needs and (verdict := needs.verdict(axis, name)):
+        responses_grid.write(ax, verdict)
+
+
 def _draw_values(ax: Axes, runs: xr.Dataset, name: str, spacing: Floats, selected: Plan) -> None:
     """Draw a response that has no limit to differ from."""
     values, label = responses_grid.shown(runs, name)
@@ -163,26 +168,37 @@ def _draw_values(ax: Axes, runs: xr.Dataset, name: str, spacing: Floats, selecte
     _scale_spacing(ax, spacing)
 
 
-def _unconverged(runs: xr.Dataset, analysis: xr.Dataset, axis: str, names: list[str]) -> str:
-    """Return a sentence that names the cases behind each verdict that is a warning."""
-    found = []
+def _verdicts(runs: xr.Dataset, analysis: xr.Dataset, axis: str, names: list[str]) -> str:
+    """Return sentences on the grid of the verdicts, and the cases of each that is a warning."""
+    needs = needed(runs, analysis)
+    if needs is None or f"{axis}_verdict" not in needs.analysis:
+        return ""
+    beside = needs.beside(axis)
+    sentences = [f"The verdicts are those of {beside}."] if beside else []
+    places: dict[str, list[str]] = {}
     for name in names:
-        flags = _of(analysis, f"{axis}_verdict", name)
+        flags = _of(needs.analysis, f"{axis}_verdict", name)
         warnings = [verdict.value for verdict in access.occurring(flags) if not verdict.sound]
         cases = np.argwhere(np.isin(flags.values, warnings))
+        if not len(cases):
+            continue
         shown = [
             ", ".join(labels.value(runs[dim], at) for dim, at in zip(flags.dims, case, strict=True))
             for case in cases[:_NAMED]
         ]
-        more = [f"{len(cases) - _NAMED} more"] if len(cases) > _NAMED else []
-        which = f" ({'; '.join([*shown, *more])})" if any(shown) else ""
-        if len(cases):
-            count = f"{len(cases)} of {labels.counted(flags.size, 'case')}"
-            found.append(f"{labels.response(name)} in {count}{which}")
-    return f"Not converged: {labels.listing(found)}." if found else ""
+        if len(cases) > _NAMED:
+            shown.append(f"{len(cases) - _NAMED} more")
+        if len(cases) == flags.size > 1:
+            shown = ["every case"]
+        place = f" ({'; '.join(shown)})" if any(shown) else ""
+        places.setdefault(place, []).append(labels.response(name))
+    found = [labels.listing(listed) + place for place, listed in places.items()]
+    if found:
+        sentences.append(f"Not converged on the finest grid: {'; '.join(found)}.")
+    return " ".join(sentences)
 
 
-def _enough(runs: xr.Dataset, analysis: xr.Dataset) -> str:
+def enough(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """Return a sentence on the grid that each response needs, as the answer of the report."""
     needs = needed(runs, analysis)
     if needs is None:
@@ -267,17 +283,18 @@ def _scale_spacing(ax: Axes, spacing: Floats) -> None:
 @record.figure(
     "Convergence in integration points",
     "Difference to the value with the most integration points over the depth (which is left "
-    "out, being its own reference), relative to it. A verdict "
-    "is the worst over the whole grid, also over what is not drawn.",
+    "out, being its own reference), relative to it. A response has converged where three times "
+    "that of the second most points is within 1 %.",
     lambda runs, analysis: "points" in runs.dims and bool(analysed(runs, analysis, "points_error")),
     lambda runs, analysis: _POINTS.sentences(runs, analysis)[1:],  # there is no limit to judge by
 )
 def points_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a panel per response, a curve per rule (and velocity)."""
     selected, points = _POINTS.plan(runs), analysis["points"].values
+    needs = needed(runs, analysis)
     figure, axes = responses_grid.panels(_POINTS.names(runs), height=40)
     for name, ax in axes.items():
-        responses_grid.write_verdict(ax, analysis, "points_summary", name)
+        _write_verdict(ax, needs, "points", name)
         error = abs(analysis["points_error"].sel(response=name)).transpose("points", ...)
         for curve, values in _above_round_off(error, selected):
             curves.add(ax, points, values, curve)
@@ -309,7 +326,7 @@ def _draw_tolerance(ax: Axes) -> None:
         and all(name in runs.coords for name in _INPUTS)
         and bool(runs["beam_model"].isin(BEAM_MODELS).all())  # the cost of others is not known
     ),
-    _COST.sentences,
+    lambda runs, analysis: (enough(runs, analysis), *_COST.sentences(runs, analysis)[2:]),
 )
 def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a panel per response, a curve for each of a few other settings."""

@@ -1,4 +1,4 @@
-"""The grid that each response of a convergence study needs: for answer, tables and captions."""
+"""The one judgement of a convergence study: of answer, figures, captions and tables alike."""
 
 from __future__ import annotations
 
@@ -22,37 +22,68 @@ _KINDS = ("rule", "scheme")
 
 
 class Needs(NamedTuple):
-    """The coarsest grid that keeps each response within tolerance.
+    """The coarsest grid that keeps each response within tolerance, and the verdicts behind it.
 
     A value counts as within where its difference to the finest grid and the uncertainty of that
-    grid add up to no more, here and on all finer grids, at each point of the rest of the grid.
-    runs: finest first, of the rule and scheme that need least. axes: that were judged. grids: by
-    response that has one, its positions on the axes. errors: by response, on (*axes), relative.
+    grid add up to no more, here and on all finer grids, for all the rest of the study; and where
+    the finest grid has a sound verdict on each axis. runs: finest first, of the rule and scheme
+    that need least. axes: that were judged. grids: by response that has one, its positions on the
+    axes. errors: by response, on (*axes), relative. analysis: at the finest grid of the runs, on
+    (response, *rest of the study).
     """
 
     runs: xr.Dataset
     axes: list[str]
     grids: dict[str, tuple[int, ...]]
     errors: dict[str, xr.DataArray]
+    analysis: xr.Dataset
 
     def words(self, need: tuple[int, ...]) -> str:
         """Return a grid in words: "201 nodes and 7 points, Gauss-Lobatto"."""
-        told = []
-        for dim, at in zip(self.axes, need, strict=True):
-            one = self.runs[dim]
-            text = f"{dim.replace('_', ' ')} {labels.values(one, [at])[0]}{labels.unit(one)}"
-            told.append(labels.value(one, at) if dim in ("nodes", "points") else text)
-        kinds = [self.runs[dim] for dim in _KINDS if dim in self.runs.dims]
-        return ", ".join([labels.listing(told), *(labels.values(kind, [0])[0] for kind in kinds)])
+        return self._words(dict(zip(self.axes, need, strict=True)))
 
-    def doubts(self, analysis: xr.Dataset, name: str) -> list[str]:
-        """Return the verdicts on a response at the finest grid that are warnings."""
-        said: list[str] = []
+    def beside(self, axis: str) -> str:
+        """Return the finest grid without an axis in words: "21 points, Gauss-Lobatto"."""
+        varied = [dim for dim, name in REFINED.items() if dim in self.runs.dims and name != axis]
+        return self._words(dict.fromkeys(varied, 0))
+
+    def _words(self, positions: dict[str, int]) -> str:
+        levels = []
+        for dim, position in positions.items():
+            level = self.runs[dim]
+            text = f"{dim.replace('_', ' ')} {labels.values(level, [position])[0]}"
+            counted = dim in ("nodes", "points")
+            levels.append(labels.value(level, position) if counted else text + labels.unit(level))
+        kinds = [self.runs[dim] for dim in _KINDS if dim in self.runs.dims]
+        parts = [labels.listing(levels), *(labels.values(kind, [0])[0] for kind in kinds)]
+        return ", ".join(filter(None, parts))
+
+    def verdict(self, axis: str, name: str) -> access.Verdict | None:
+        """Return the worst verdict on a response at the finest grid, over the rest of the study."""
+        if f"{axis}_verdict" not in self.analysis or not access.known(self.analysis, name):
+            return None
+        return access.occurring(self.analysis[f"{axis}_verdict"].sel(response=name))[-1]
+
+    def doubts(self, name: str) -> list[str]:
+        """Return why no grid keeps a response within tolerance; none where one does."""
+        axes: dict[str, list[str]] = {}
         for dim in self.axes:
-            verdict = at_finest(analysis.sel(response=name), self.runs, REFINED[dim])
-            if verdict and not verdict.sound and verdict.words not in said:
-                said.append(verdict.words)
-        return said
+            verdict = self.verdict(REFINED[dim], name)
+            if verdict and not verdict.sound:
+                axes.setdefault(verdict.words, []).append(_WORDS[REFINED[dim]])
+        doubts = [f"{words} in {labels.listing(listed)}" for words, listed in axes.items()]
+        if doubts or name in self.grids:
+            return doubts
+        listed = [_WORDS[REFINED[dim]] for dim in self.axes]
+        return [f"the uncertainties in {labels.listing(listed)} add up"]
+
+
+_WORDS = {
+    "nodes": "nodes",
+    "time_step": "time step",
+    "element_size": "element size",
+    "points": "points",
+}
 
 
 def needed(runs: xr.Dataset, analysis: xr.Dataset) -> Needs | None:
@@ -64,7 +95,7 @@ def needed(runs: xr.Dataset, analysis: xr.Dataset) -> Needs | None:
             if f"{axis}_uncertainty" in analysis:
                 axes.append(dim)
             else:
-                runs = runs.isel({dim: 0})
+                runs = runs.isel({dim: [0]})
     kinds = [dim for dim in _KINDS if dim in runs.dims]
     tried = []
     names = analysed(runs, analysis) if axes else []
@@ -82,12 +113,17 @@ def _least(runs: xr.Dataset, analysis: xr.Dataset, axes: list[str]) -> Needs:
     values = xr.Dataset({name: usable(runs, name) for name in names}).to_array("response")
     limit = values.isel(dict.fromkeys(axes, 0))
     error = abs(values - limit) / abs(limit)
-    for dim in axes:
-        error = error + finest(analysis[f"{REFINED[dim]}_uncertainty"], runs)
+    judged = analysis.map(finest, keep_attrs=True, runs=runs)
+    sound = xr.ones_like(judged["response"], bool)
+    for axis in (REFINED[dim] for dim in axes):
+        error = error + judged[f"{axis}_uncertainty"]
+        verdicts = judged[f"{axis}_verdict"]
+        is_sound = verdicts.isin([each.value for each in access.occurring(verdicts) if each.sound])
+        sound = sound & is_sound.all([dim for dim in verdicts.dims if dim != "response"])
     same = (values == limit).all(axes)  # as is a plastic strain that is zero everywhere
     error = error.fillna(np.inf).where(~same, 0.0).transpose("response", *axes, ...)
     error = error.max(error.dims[1 + len(axes) :])
-    within = (error <= TOLERANCE).astype(int)
+    within = ((error <= TOLERANCE) & sound).astype(int)
     for dim in axes:
         within = within.cumprod(dim)
     best = cost.where(within == 1, np.inf).transpose(*error.dims).argmin(axes)
@@ -96,16 +132,14 @@ def _least(runs: xr.Dataset, analysis: xr.Dataset, axes: list[str]) -> Needs:
         for name, found in zip(names, within.any(axes).values, strict=True)
         if found
     }
-    return Needs(runs, axes, grids, {name: error.sel(response=name) for name in names})
+    errors = {name: error.sel(response=name) for name in names}
+    return Needs(runs, axes, grids, errors, judged)
 
 
-def finest(array: xr.DataArray, runs: xr.Dataset) -> xr.DataArray:
-    """Return a variable of the analysis at the finest grid of the runs, and of their kind."""
-    at = [dim for dim in (*REFINED, *_KINDS) if dim in array.dims]
-    return array.sel({dim: runs[dim].values.flat[0] for dim in at}, drop=True)
+def finest(array: xr.DataArray, runs: xr.Dataset, but: str = "") -> xr.DataArray:
+    """Return a variable of the analysis at the finest grid of the runs, and of their kind.
 
-
-def at_finest(analysis: xr.Dataset, runs: xr.Dataset, axis: str) -> access.Verdict | None:
-    """Return the worst verdict on one response at the finest grid, and over the physics."""
-    key = f"{axis}_verdict" if f"{axis}_verdict" in analysis else f"{axis}_summary"
-    return access.occurring(finest(analysis[key], runs))[-1] if key in analysis else None
+    but: a dimension that is left.
+    """
+    dims = [dim for dim in (*REFINED, *_KINDS) if dim in array.dims and dim != but]
+    return array.sel({dim: runs[dim].values.flat[0] for dim in dims}, drop=True)

@@ -15,7 +15,7 @@ from impactlab.figures.access import design_dims, responses, usable
 from impactlab.figures.distributions import spread_evenly
 from impactlab.figures.labels import display
 from impactlab.figures.measures import MORRIS, RANKED, REGRESSION, SOBOL, Family, Index, analysed
-from impactlab.figures.needs import ORDERED, Needs, finest, needed
+from impactlab.figures.needs import ORDERED, Needs, needed
 from impactlab.report import measured
 from impactlab.report.cautions import beside
 from impactlab.report.distribution import limit_entries
@@ -74,7 +74,7 @@ def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
     >>> runs = study.run(workers=1)
     >>> for line in il.answers(runs, il.analyse(runs)):
     ...     print(line)
-    Value (wide intervals): x1 ...
+    Value (usable): x1 ...
     """
     if analysis is None and runs.attrs.get("content") != "findings":
         analysis = analyse(runs)
@@ -97,7 +97,7 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[
         note = f"{families[0].title}, {kind}, ± the half-width of the"
         note += f" {access.confidence(analysis)} interval. {shared(runs)}".rstrip()
     elif needs := needed(runs, analysis):
-        findings = _convergence(analysis, needs)
+        findings = _convergence(needs)
         note = "± the difference to the finest grid and the numerical uncertainty of that grid."
     else:
         findings = _ranges(runs, analysis)
@@ -271,21 +271,18 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> list[Entry]:
     return findings
 
 
-def _convergence(analysis: xr.Dataset, needs: Needs) -> list[Entry]:
+def _convergence(needs: Needs) -> list[Entry]:
     """Return one entry per grid that keeps responses within tolerance, and those without any."""
     groups: dict[tuple[int, ...], list[str]] = defaultdict(list)
     for name, need in needs.grids.items():
         groups[need].append(name)
-    while len(groups) > LINES - 1:  # the two smallest groups share a grid that is fine enough
-        first, second = sorted(groups, key=lambda need: len(groups[need]))[:2]
-        merged = groups.pop(first) + groups.pop(second)
-        groups[tuple(map(min, first, second))] += merged
     findings = []
     for need, names in sorted(groups.items(), key=lambda item: -len(item[1])):
         remarks = [uncertainty(max(float(needs.errors[name][need]) for name in names))]
         for axis in (ORDERED[dim] for dim in needs.axes if dim in ORDERED):
-            found_orders = finest(analysis[f"{axis}_observed_order"], needs.runs)
-            orders = found_orders.sel(response=names).values
+            judged = needs.analysis.sel(response=names)
+            credible = np.isfinite(judged[f"{axis}_extrapolated"])
+            orders = judged[f"{axis}_observed_order"].where(credible).values
             if np.isfinite(orders).any():
                 order = labels.span(orders[np.isfinite(orders)], 2)
                 remarks.append(f"observed order {order} in the {axis.replace('_', ' ')}")
@@ -296,6 +293,6 @@ def _convergence(analysis: xr.Dataset, needs: Needs) -> list[Entry]:
     for name in [name for name in needs.errors if name not in needs.grids]:
         error = float(needs.errors[name].min())
         remarks = [uncertainty(error)] if error < 1 else []
-        remarks += needs.doubts(analysis, name)
+        remarks += needs.doubts(name)
         beyond.append(f"{labels.response(name)} ({', '.join(remarks)})")
     return findings + ([("On no grid of this study", labels.listing(beyond))] if beyond else [])

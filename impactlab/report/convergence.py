@@ -10,8 +10,7 @@ import xarray as xr
 from impactlab import wings
 from impactlab.analysis.verdicts import TOLERANCE
 from impactlab.figures import access, labels
-from impactlab.figures.measures import analysed
-from impactlab.figures.needs import Needs, at_finest, needed
+from impactlab.figures.needs import Needs, finest, needed
 from impactlab.report.page import Cell, Row, Section, Table, largest
 from impactlab.types import Floats
 
@@ -20,18 +19,23 @@ _ORDERS = (
     "three finest grids, with the factor 1.25, or 3 where not every three successive grids show a "
     "credible order, or it is above 2.1. The fit is that of Eça and Hoekstra over four grids or "
     "more. The numerical uncertainty of the finest value is based on both, and on the larger where "
-    "there is an order; on the range of the values where the grids span less than a factor of 2; "
-    "all are relative to that value. Ranges and largest values are taken over the rest of the grid."
+    "there is an order; it is at least three times the error of first order unless the next three "
+    "grids, or where there are none the scheme, confirm that order; where the grids span less than "
+    "a factor of 2 it is based on the range of the values; all are relative to that value. The "
+    "index and the fit stand only where the uncertainty rests on them. Other axes are at their "
+    "finest values; ranges and largest values are over the rest of the study."
 )
 _WITHIN = (
     "The error is the difference to the finest grid plus the uncertainty of that grid, the largest "
-    "over the rest of the study; it stays within the tolerance on every finer grid as well. The "
-    "verdicts are those of the finest grid."
+    "over the rest of the study; it stays within the tolerance on every finer grid as well. Doubts "
+    "are the verdicts of the finest grid, which the tables below explain."
 )
 _RULES = (
     "Each rule is compared with its own largest number of points. The numerical uncertainty is "
     "three times the difference from the next smaller number, because the error need not follow a "
-    "power of the number of points."
+    "power of the number of points; the points needed keep error and uncertainty together within "
+    "1 %. The nodes and the time step are at their finest values; the largest values are over the "
+    "rest of the study."
 )
 _AXES = {
     "nodes": ("Convergence in nodes along the span", _ORDERS),
@@ -44,45 +48,49 @@ _AXES = {
 
 def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     """Return the section on the axes that the analysis has, or none."""
-    needs, tables = needed(runs, analysis), []
-    if needs:
-        tables.append(_needs(analysis, needs))
+    needs = needed(runs, analysis)
+    if needs is None:
+        return []
+    tables = [_needs(needs)]
     for axis, (caption, explanation) in _AXES.items():
-        if f"{axis}_summary" not in analysis:
+        if f"{axis}_verdict" not in needs.analysis:
             continue
         cells: dict[str, Cell] = {}
         rows: list[Row] = []
-        for name in analysed(runs, analysis):
-            found = analysis.sel(response=name)
-            verdict = at_finest(found, needs.runs if needs else runs, axis)
+        for name in needs.errors:
+            found = needs.analysis.sel(response=name)
+            behaviours = access.occurring(found.get(f"{axis}_behaviour", xr.DataArray()))
+            detail = ", ".join(behaviour.words for behaviour in behaviours)
+            detail = f"behaviour: {detail}" if detail else ""
+            verdict = needs.verdict(axis, name)
             kind = "" if verdict and verdict.sound else "warning"
-            judged = Cell(verdict.words if verdict else "not judged", kind)
-            over = (_counts(found, f"{axis}_{kind}") for kind in ("verdict", "behaviour"))
-            verdicts, behaviours = (", ".join(map(" ".join, each.items())) for each in over)
-            detail = f"behaviour: {behaviours}" * bool(behaviours)
-            cells = _cells(found, axis)
-            response = labels.sentence(labels.response(name))
-            rows.append([response, judged, Cell(verdicts or "–", detail=detail), *cells.values()])
-        head = ["Response", "Verdict on the finest grid", "Verdicts over the grid", *cells]
-        remarks = [explanation, *_remarks(analysis, axis)]
+            judged = Cell(verdict.words if verdict else "not judged", kind, detail)
+            cells = (
+                _cells(found, axis) if axis != "points" else _points_cells(analysis, needs, name)
+            )
+            rows.append([labels.sentence(labels.response(name)), judged, *cells.values()])
+        remarks = [explanation, *_remarks(needs.analysis, axis)]
         meanings: dict[str, str] = {}
-        for kind in ("behaviour", "summary", "verdict"):
-            flags = access.occurring(analysis.get(f"{axis}_{kind}", xr.DataArray()))
+        for key in ("behaviour", "verdict"):
+            flags = access.occurring(needs.analysis.get(f"{axis}_{key}", xr.DataArray()))
             meanings |= {flag.words: flag.meaning for flag in flags if flag.meaning}
-        tables.append(Table(caption, head, rows, remarks, sorted(meanings.items())))
-    return [Section("convergence", "Convergence", tables=tables)] if tables else []
+        beside = needs.beside(axis)
+        title = f"{caption}: {beside}" if beside else caption
+        head = ["Response", "Verdict", *cells]
+        tables.append(Table(title, head, rows, remarks, sorted(meanings.items())))
+    return [Section("convergence", "Convergence", tables=tables)]
 
 
-def _needs(analysis: xr.Dataset, needs: Needs) -> Table:
+def _needs(needs: Needs) -> Table:
     """Return one row per response: the grid from which it is within tolerance."""
     rows: list[Row] = []
     for name, errors in needs.errors.items():
-        need, best = needs.grids.get(name), float(errors.min())
+        need = needs.grids.get(name)
         grid: list[Cell | str] = [Cell("none of this study", "warning"), "–"]
         if need:
             grid = [needs.words(need), Cell(labels.percent(float(errors[need])), "number")]
-        least = Cell(labels.percent(best) if best < 1 else "no bound", "number")
-        doubts = ", ".join(needs.doubts(analysis, name)) or "–"
+        least = Cell(labels.percent(float(errors.min())), "number")
+        doubts = ", ".join(needs.doubts(name)) or "–"
         rows.append([labels.sentence(labels.response(name)), *grid, least, doubts])
     share = labels.percent(TOLERANCE)
     head = ["Response", f"Within {share} from", "Error there", "Least error", "Doubts"]
@@ -91,41 +99,64 @@ def _needs(analysis: xr.Dataset, needs: Needs) -> Table:
 
 def _remarks(analysis: xr.Dataset, axis: str) -> list[str]:
     """Return what is refined along with the axis, and which responses have no limit by design."""
-    attrs = analysis[f"{axis}_summary"].attrs
+    attrs = analysis[f"{axis}_verdict"].attrs
     remarks = [str(attrs["comment"])] if attrs.get("comment") else []
     for line in attrs.get("without_limit", "").splitlines():
         name, _, reason = line.partition(": ")
-        if "not convergent by design" in _counts(analysis.sel(response=name), f"{axis}_behaviour"):
+        behaviours = access.occurring(analysis[f"{axis}_behaviour"].sel(response=name))
+        if any(behaviour.flag == "not_convergent_by_design" for behaviour in behaviours):
             remarks.append(f"The {labels.response(name)} is not convergent by design: {reason}.")
     return remarks
 
 
 def _cells(found: xr.Dataset, axis: str) -> dict[str, Cell]:
-    """Return the numbers of one response, by the head of their column."""
-    uncertainty = largest(found, f"{axis}_uncertainty")
-    if axis != "points":
-        ratio = _spread(found, f"{axis}_asymptotic_ratio").text
-        detail = "" if ratio == "–" else f"asymptotic ratio {ratio}"
-        return {
-            "Observed order": _spread(found, f"{axis}_observed_order"),
-            "Largest GCI": replace(largest(found, f"{axis}_gci"), detail=detail),
-            "Order of the fit": _spread(found, f"{axis}_fit_order"),
-            "Uncertainty by the fit": largest(found, f"{axis}_fit_uncertainty"),
-            "Numerical uncertainty": uncertainty,
-        }
-    head, needed = "Points needed for 1 %", found["points_needed"]
-    cells = {head: needed}
-    if "rule" in needed.dims:
-        rules = labels.values(needed["rule"], range(needed.sizes["rule"]))
-        cells = {f"{head}, {rule}": needed.isel(rule=at) for at, rule in enumerate(rules)}
-    uncertain = {"Numerical uncertainty with the most points": uncertainty}
-    return {head: _needed(each.values) for head, each in cells.items()} | uncertain
+    """Return the numbers of one response at the finest grid, by the head of their column."""
+    indexed = _resting_on(found, axis, "gci", "gci_and_fit")
+    fitted = _resting_on(found, axis, "fit", "gci_and_fit")
+    ratio = _spread(indexed, f"{axis}_asymptotic_ratio").text
+    detail = "" if ratio == "–" else f"asymptotic ratio {ratio}"
+    return {
+        "Observed order": _spread(found, f"{axis}_observed_order"),
+        "Largest GCI": replace(largest(indexed, f"{axis}_gci"), detail=detail),
+        "Order of the fit": _spread(fitted, f"{axis}_fit_order"),
+        "Uncertainty by the fit": largest(fitted, f"{axis}_fit_uncertainty"),
+        "Numerical uncertainty": _uncertainty(found, axis),
+    }
 
 
-def _counts(found: xr.Dataset, variable: str) -> dict[str, str]:
-    """Count each flag, in words, over the rest of the grid."""
-    flags = found.get(variable, xr.DataArray())
-    return {flag.words: str(int((flags == flag.value).sum())) for flag in access.occurring(flags)}
+def _resting_on(found: xr.Dataset, axis: str, *flags: str) -> xr.Dataset:
+    """Return the numbers where the uncertainty rests on one of these; NaN elsewhere."""
+    basis = found.get(f"{axis}_uncertainty_from")
+    if basis is None:
+        return found
+    codes = [flag.value for flag in access.occurring(basis) if flag.flag in flags]
+    return found.where(basis.isin(codes))
+
+
+def _uncertainty(found: xr.Dataset, axis: str) -> Cell:
+    """Return the largest numerical uncertainty, with a reason where nothing bounds it."""
+    cell = largest(found, f"{axis}_uncertainty")
+    endless = np.isinf(found[f"{axis}_uncertainty"])
+    if not endless.any():
+        return cell
+    basis = found.get(f"{axis}_uncertainty_from", xr.DataArray())
+    bounded = [flag.value for flag in access.occurring(basis) if flag.flag != "nothing"]
+    zero = bool((endless & basis.isin(bounded)).any())
+    return replace(cell, detail="the finest value is zero" if zero else "nothing bounds the error")
+
+
+def _points_cells(analysis: xr.Dataset, needs: Needs, name: str) -> dict[str, Cell]:
+    """Return the points that each rule needs for one response, and its uncertainty."""
+    head = f"Points needed for {labels.percent(TOLERANCE)}"
+    by_rule = finest(analysis["points_needed"].sel(response=name), needs.runs, but="rule")
+    cells = {head: by_rule}
+    if "rule" in by_rule.dims:
+        rules = labels.values(by_rule["rule"], range(by_rule.sizes["rule"]))
+        cells = {f"{head}, {rule}": by_rule.isel(rule=at) for at, rule in enumerate(rules)}
+    uncertain = largest(needs.analysis.sel(response=name), "points_uncertainty")
+    return {head: _most(counts.values) for head, counts in cells.items()} | {
+        "Numerical uncertainty with the most points": uncertain
+    }
 
 
 def _spread(found: xr.Dataset, variable: str) -> Cell:
@@ -134,11 +165,8 @@ def _spread(found: xr.Dataset, variable: str) -> Cell:
     return Cell(labels.span(finite, 3) if finite.size else "–", "number")
 
 
-def _needed(needed: Floats) -> Cell:
-    """Return the range over the grid; say where not even the second most points stay within 1 %."""
-    given, none = needed[np.isfinite(needed)], "none below the largest"
-    if not given.size:
-        return Cell(none, "warning")
-    gaps = needed.size - given.size
-    detail = f"{none} at {gaps} of {needed.size} points" * bool(gaps)
-    return Cell(labels.span(given, 4), "number", detail)
+def _most(counts: Floats) -> Cell:
+    """Return the most points that a case needs; say where a case needs more than there are."""
+    if np.isnan(counts).any():
+        return Cell("none of this study", "warning")
+    return Cell(labels.number(float(counts.max()), 4), "number")

@@ -68,7 +68,8 @@ def problems(thing: Callable[..., Any]) -> list[str]:
     try:
         signature = inspect.signature(thing)
     except ValueError:  # of exceptions, which Python's own code makes
-        signature = inspect.Signature([inspect.Parameter("args", inspect.Parameter.VAR_POSITIONAL)])
+        arguments = [inspect.Parameter("args", inspect.Parameter.VAR_POSITIONAL)]
+        signature = inspect.Signature(arguments if documented else [])
     parameters = {name: entry for name, entry in signature.parameters.items() if name != "self"}
     messages = [f"{name}: is not documented" for name in parameters.keys() - documented.keys()]
     messages += [f"{name}: is not a parameter" for name in documented.keys() - parameters.keys()]

@@ -16,11 +16,12 @@ from impactlab.types import Floats
 
 SAFETY = 3.0
 """Uncertainty over difference to the most points, valid where these at least halve the error."""
-_COMMENT = "The most points are the reference: their own error is not known."
+_COMMENT = "The most points are the reference: the uncertainty is theirs."
 _LONG_NAMES = {
     "points_error": "relative difference to the most integration points",
     "points_uncertainty": "numerical uncertainty with the most integration points",
-    "points_needed": "fewest integration points from which on the error stays in tolerance",
+    "points_needed": "fewest integration points from which on error and uncertainty stay within "
+    "tolerance",
 }
 
 
@@ -28,9 +29,15 @@ class PointsVerdict(Verdict):
     """The effect of more integration points on one response at one point of the grid."""
 
     AT_ROUND_OFF = True, "no number of points changes the value by more than 1e-9"
-    CONVERGED = True, "the most points and the next fewer agree within 1 %"
+    CONVERGED = (
+        True,
+        "three times the difference of the most points to the next fewer is within 1 %",
+    )
     UNDETERMINED = False, "a run with the most points or the next fewer is missing"
-    NOT_CONVERGED = False, "the most points and the next fewer differ by more than 1 %"
+    NOT_YET_CONVERGED = (
+        False,
+        "three times the difference of the most points to the next fewer exceeds 1 %",
+    )
 
 
 def applies(runs: xr.Dataset) -> bool:
@@ -43,7 +50,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
 
     Returns points_error on (response, *grid dims): |value - reference|/|reference|, NaN where
     either is missing, infinite where only the reference is zero. On (response, *other dims):
-    points_uncertainty, points_needed (NaN where none below the most do), points_verdict; beside
+    points_uncertainty, points_needed (NaN where not even the most do), points_verdict; beside
     them points_summary (response).
     """
     values = usable(runs).sortby("points")
@@ -51,18 +58,19 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     difference = abs(values - reference)
     against_zero = difference.where(difference.isnull() | (difference == 0), np.inf)
     error = (difference / abs(reference).where(reference != 0)).where(reference != 0, against_zero)
-    fewer = error.isel(points=slice(-2, None, -1))  # than the most, the nearest to these first
-    nearest = fewer.isel(points=0, drop=True)
+    most_first = error.isel(points=slice(None, None, -1))
+    nearest = most_first.isel(points=1, drop=True)
+    uncertainty = SAFETY * nearest
     # A missing run ends the stretch of small errors: it is not within anything.
-    stays = (fewer <= TOLERANCE).astype(int).cumprod("points") == 1
-    codes = xr.full_like(nearest, PointsVerdict.NOT_CONVERGED, np.int8)
-    codes = codes.where(nearest > TOLERANCE, PointsVerdict.CONVERGED)
-    codes = codes.where(~(fewer <= ROUND_OFF).all("points"), PointsVerdict.AT_ROUND_OFF)
+    stays = (most_first + uncertainty <= TOLERANCE).astype(int).cumprod("points") == 1
+    codes = xr.full_like(nearest, PointsVerdict.NOT_YET_CONVERGED, np.int8)
+    codes = codes.where(uncertainty > TOLERANCE, PointsVerdict.CONVERGED)
+    codes = codes.where(~(most_first <= ROUND_OFF).all("points"), PointsVerdict.AT_ROUND_OFF)
     codes = codes.where(nearest.notnull(), PointsVerdict.UNDETERMINED)
     dims = ("response", *runs["status"].dims)
     found = {
         "points_error": error.sel(points=runs["points"]).transpose(*dims),
-        "points_uncertainty": SAFETY * nearest,
+        "points_uncertainty": uncertainty,
         "points_needed": error["points"].where(stays).min("points"),
     }
     words = "convergence with the integration points"

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from impactlab.fem3d.wing import MODEL, SIZES, SOLID
 from impactlab.figures import labels, record
-from impactlab.figures.convergence import CAPTION, Refined, draw
+from impactlab.figures.convergence import CAPTION, Refined, draw, enough
 from impactlab.figures.labels import display
 
 
@@ -31,7 +31,10 @@ def _solid(dataset: xr.Dataset) -> xr.Dataset:
     lambda runs, analysis: (
         _elements(runs).applies(runs, analysis) and SOLID in runs["beam_model"].values
     ),
-    lambda runs, analysis: _elements(runs).sentences(_solid(runs), _solid(analysis)),
+    lambda runs, analysis: (
+        enough(runs, analysis),
+        *_elements(runs).sentences(_solid(runs), _solid(analysis))[1:],
+    ),
 )
 def element_size_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw against the size of the elements, or over the radius that the contact is to have."""

@@ -199,7 +199,8 @@ def test_what_has_no_limit_by_design_is_drawn_as_it_is(study: Study) -> None:
     flags = {"flag_meanings": "converged not_convergent_by_design not_yet_converged"}
     verdict = 0 * analysis["nodes_observed_order"].fillna(0.0).astype(np.int8)
     verdict.loc[{"response": "peak_plastic_strain"}] = 1
-    verdict.loc[{"response": "peak_force", "points": 3, "velocity": 15.0}] = 2
+    verdict.loc[{"response": "peak_force", "points": 17, "velocity": 15.0}] = 2
+    verdict.loc[{"response": "number_of_contacts", "points": 3}] = 2  # not on the finest grid
     verdict.attrs |= flags | {"flag_values": [0, 1, 2], "sound_flags": "converged"}
     judged = analysis.assign(nodes_verdict=verdict)
     axes = panel(NODES.plot(runs, judged), "Peak plastic strain")
@@ -208,7 +209,8 @@ def test_what_has_no_limit_by_design_is_drawn_as_it_is(study: Study) -> None:
     np.testing.assert_allclose(strain, 100.0 * stored)
     assert axes.get_ylabel() == "Peak plastic strain (%)"
     caption = NODES.caption(runs, judged)
-    assert "peak force in 3 of 24 cases (" in caption
+    warned = "Not converged on the finest grid: peak force (15 m/s); peak plastic strain (every"
+    assert warned in caption
 
 
 def test_an_uncertainty_without_a_difference_has_the_marker_of_its_curve(study: Study) -> None:

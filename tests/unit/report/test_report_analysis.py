@@ -10,8 +10,8 @@ from impactlab.figures.catalogue import CATALOGUE
 from impactlab.variables import RESPONSES
 
 Study = Any
-NODES = "Convergence in nodes along the span"
-POINTS = "Convergence in integration points over the depth"
+NODES = "Convergence in nodes along the span: 17 points, Gauss-Lobatto"
+POINTS = "Convergence in integration points over the depth: 401 nodes, Gauss-Lobatto"
 
 
 def _row(page: Any, table: str, head: str) -> list[str]:
@@ -28,17 +28,17 @@ def test_verdicts_are_told_by_response(report: Any, discretisation_study: Study)
     runs, analysis = discretisation_study
     coarse = {"response": "peak_force", "points": runs["points"].min().item()}
     analysis["nodes_verdict"].loc[coarse] = 2
+    analysis["nodes_uncertainty"].loc[coarse] = 0.5
     page = report(runs, analysis)
     assert _row(page, NODES, "Peak force")[1:] == [
-        "converged",
-        "converged 18, divergent 6behaviour: monotone 24",
+        "convergedbehaviour: monotone",
         "2",
         "0.1 %",
         "–",
         "–",
         "0.2 %",
     ]
-    assert _row(page, NODES, "Peak plastic strain")[1] == "divergent"
+    assert _row(page, NODES, "Peak plastic strain")[1] == "divergentbehaviour: divergent"
     assert _row(page, POINTS, "Peak plastic strain")[1] == "not yet converged"
     assert "meaning of divergent" in page.text
     assert len(page.tables[NODES]) == len(page.tables[POINTS]) == 1 + len(RESPONSES)
@@ -58,10 +58,10 @@ def test_the_largest_numbers_over_the_grid_are_shown_and_dashes_where_there_are_
     analysis["nodes_uncertainty"].loc[first] = 1e-5
     page = report(runs, analysis)
     row = _row(page, NODES, "Peak force")
-    assert (row[4], row[7]) == ("7 %", "0.2 %")
-    assert _row(page, NODES, "Peak plastic strain")[3:5] == ["–", "no bound"]
-    assert _row(page, POINTS, "Peak plastic strain")[3] == "none below the largest"
-    assert _row(page, POINTS, "Impulse")[3] == "5none below the largest at 3 of 6 points"
+    assert (row[3], row[6]) == ("7 %", "0.2 %")
+    assert _row(page, NODES, "Peak plastic strain")[2:4] == ["–", "no bound"]
+    assert _row(page, POINTS, "Peak plastic strain")[2] == "none of this study"
+    assert _row(page, POINTS, "Impulse")[2] == "none of this study"
 
 
 def test_what_is_refined_along_and_what_has_no_limit_is_said(
@@ -70,7 +70,7 @@ def test_what_is_refined_along_and_what_has_no_limit_is_said(
     runs, analysis = discretisation_study
     flags = {"flag_meanings": "monotone stalled not_convergent_by_design"}
     analysis["nodes_behaviour"].attrs |= flags
-    analysis["nodes_summary"].attrs |= {
+    analysis["nodes_verdict"].attrs |= {
         "comment": "Space and time go together.",
         "without_limit": "peak_plastic_strain: it gathers\npeak_force: never so",
     }
@@ -78,7 +78,7 @@ def test_what_is_refined_along_and_what_has_no_limit_is_said(
     assert "Space and time go together." in page.text
     assert "The peak plastic strain is not convergent by design: it gathers." in page.text
     assert "never so" not in page.text
-    assert "behaviour: not convergent by design 24" in _row(page, NODES, "Peak plastic strain")[2]
+    assert "behaviour: not convergent by design" in _row(page, NODES, "Peak plastic strain")[1]
 
 
 def test_points_needed_by_each_rule(report: Any, discretisation_study: Study) -> None:
@@ -86,20 +86,20 @@ def test_points_needed_by_each_rule(report: Any, discretisation_study: Study) ->
     where = {"response": "impulse", "rule": "layers"}
     analysis["points_needed"].loc[where] = 17.0
     page = report(runs, analysis.assign(points_uncertainty=0 * analysis["points_needed"] + 0.015))
-    assert page.tables[POINTS][0][3:6] == [
+    assert page.tables[POINTS][0][2:5] == [
         "Points needed for 1 %, Gauss-Lobatto",
         "Points needed for 1 %, Gauss-Legendre",
         "Points needed for 1 %, uniform layers",
     ]
-    assert _row(page, POINTS, "Impulse")[3:] == ["5", "5", "17", "1.5 %"]
+    assert _row(page, POINTS, "Impulse")[2:] == ["5", "5", "17", "1.5 %"]
 
 
 def test_the_time_step_has_a_table_and_a_caution(report: Any, time_step_study: Study) -> None:
     runs, analysis = time_step_study
-    analysis["time_step_summary"].loc[{"response": "impulse"}] = 1
+    analysis["time_step_verdict"].loc[{"response": "impulse"}] = 1
     page = report(runs, analysis)
-    table = "Convergence in the time step at fixed nodes"
-    assert _row(page, table, "Peak force")[1:4] == ["converged", "–", "2"]
+    table = "Convergence in the time step at fixed nodes: 201 nodes, leapfrog"
+    assert _row(page, table, "Peak force")[1:3] == ["converged", "2"]
     assert _row(page, table, "Peak force")[-1] == "0.01 %"
     assert _row(page, table, "Impulse")[1] == "divergent"
     assert NODES not in page.tables

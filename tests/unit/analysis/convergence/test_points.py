@@ -16,16 +16,18 @@ POINTS = [2, 3, 5, 9, 17]
 Build = Callable[..., xr.Dataset]
 CASES = [
     # value at each number of points, points needed, verdict
-    ([3.0, 1.5, 1.05, 1.005, 1.0], 9, "converged"),
-    ([3.0, 1.005, 1.05, 1.005, 1.0], 9, "converged"),
-    ([1.0, 1.0, 1.0, 1.005, 1.0], 2, "converged"),
-    ([3.0, 1.5, 1.3, 1.2, 1.0], np.nan, "not_converged"),
-    ([3.0, 1.0, 1.0, 1.2, 1.0], np.nan, "not_converged"),
+    ([3.0, 1.5, 1.05, 1.002, 1.0], 9, "converged"),
+    ([3.0, 1.002, 1.05, 1.002, 1.0], 9, "converged"),
+    ([1.0, 1.0, 1.0, 1.002, 1.0], 2, "converged"),
+    ([3.0, 1.5, 1.05, 1.003, 1.0], 17, "converged"),  # 0.3 % off the most, they 0.9 % uncertain
+    ([3.0, 1.5, 1.05, 1.005, 1.0], np.nan, "not_yet_converged"),
+    ([3.0, 1.5, 1.3, 1.2, 1.0], np.nan, "not_yet_converged"),
+    ([3.0, 1.0, 1.0, 1.2, 1.0], np.nan, "not_yet_converged"),
     ([0.0, 0.0, 0.0, 0.0, 0.0], 2, "at_round_off"),
     ([-4.0, -4.0, -4.0, -4.0, -4.0 - 1e-9], 2, "at_round_off"),
     ([1e-3, 1e-4, 0.0, 0.0, 0.0], 5, "converged"),
     ([np.nan, 0.0, 0.0, 0.0, 0.0], 3, "converged"),
-    ([1e-3, 1e-4, 0.0, 1e-5, 0.0], np.nan, "not_converged"),
+    ([1e-3, 1e-4, 0.0, 1e-5, 0.0], np.nan, "not_yet_converged"),
     ([np.nan, 1.5, 1.0, 1.0, 1.0], 5, "converged"),
     ([3.0, np.nan, 1.0, 1.0, 1.0], 5, "converged"),
     ([3.0, 1.5, 1.0, np.nan, 1.0], np.nan, "undetermined"),
@@ -66,7 +68,7 @@ def test_errors_are_relative_to_the_most_points(
     assert (layers.sel(points=33) == 0).all()
     needed = found["points_needed"].sel(response="maximum_deflection")
     assert needed.dims == ("rule", "velocity")
-    assert needed.values.tolist() == [[3, 3], [5, 5]]
+    assert needed.values.tolist() == [[3, 3], [9, 9]]
     assert verdicts_of(found["points_summary"]) == ["converged"]
     assert verdicts_of(found["points_verdict"]) == [[["at_round_off"] * 2, ["converged"] * 2]]
 
