@@ -6,6 +6,7 @@
 # make long    the tests that take longer: the 3-D model and its decks on finer meshes
 # make chaos   what crashes, full disks, lost workers and hostile files must not do (10 minutes)
 # make kratos  the 3-D model against Kratos Multiphysics, in a coarse case (2 minutes)
+# make oldest  quick unit tests with the lowest versions that pyproject.toml allows (2 minutes)
 # make docs    the site, in site/index.html: its notebooks and small studies are solved (6 minutes)
 # make stored  answers and pictures of the gallery's large studies, in docs/stored: those without any
 #              that are current (a minute to half an hour each), or STORED='sobol_large witness'
@@ -24,12 +25,15 @@ PYTEST_ARGS ?=
 SCALING_ARGS ?=
 STORED ?=
 UV ?= uv
+OLDEST_TESTS ?= jit solver model simulate study analysis
 VENV ?= .venv
+OLDEST ?= .venv-oldest
 
 BIN := $(VENV)/bin
 # Named for this folder and this Python: a copied checkout would otherwise run the other's code.
 KEY := $(shell { pwd -P; $(PYTHON) -c 'import sys; print(sys.version_info[:2])'; } 2>&1 | cksum | cut -d ' ' -f 1)
 MADE := $(VENV)/made-$(KEY)
+MADE_OLDEST := $(OLDEST)/made-$(KEY)
 # Without it every step of a study compiles its libraries' bytecode again, for seconds.
 unexport PYTHONDONTWRITEBYTECODE
 IN_VENV := PATH="$(abspath $(BIN)):$$PATH"
@@ -38,7 +42,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete \
   --max-jobs-per-timespan 100/5s
 
-.PHONY: study paper all test lint pytest long chaos kratos docs stored site bench scaling mutants coverage constraints unlock clean
+.PHONY: study paper all test lint pytest long chaos kratos oldest docs stored site bench scaling mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 STOPPED := echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
@@ -78,6 +82,11 @@ chaos: $(MADE)-dev
 kratos: $(MADE)-dev $(MADE)-kratos
 	$(IN_VENV) python -m pytest -m kratos $(PYTEST_ARGS)
 
+# Deprecations in old libraries are not errors.
+oldest: $(MADE_OLDEST)
+	PATH="$(abspath $(OLDEST)/bin):$$PATH" python -m pytest -n auto -W default --disable-warnings \
+	  -m 'not slow and not long and not chaos' $(addprefix tests/unit/,$(OLDEST_TESTS)) $(PYTEST_ARGS)
+
 docs: $(MADE)-docs
 	$(IN_VENV) python -m sphinx -W --keep-going --quiet -d build/docs docs site
 	@echo 'Done. Open site/index.html'
@@ -116,7 +125,7 @@ unlock: $(MADE)-workflow
 
 # Keeps results.
 clean:
-	rm -rf $(VENV) build dist site jupyter_execute docs/gallery .coverage htmlcov .hypothesis .import_linter_cache \
+	rm -rf $(VENV) $(OLDEST) build dist site jupyter_execute docs/gallery .coverage htmlcov .hypothesis .import_linter_cache \
 	  .mypy_cache .pytest_cache .ruff_cache
 
 $(MADE):
@@ -132,4 +141,10 @@ $(MADE):
 $(MADE)-%: $(MADE) pyproject.toml constraints.txt
 	@echo 'Installing into $(VENV) (a few minutes the first time) ...'
 	$(PIP) install --quiet --no-compile --editable '.[$*]' --constraint constraints.txt
+	@touch $@
+
+$(MADE_OLDEST): pyproject.toml
+	$(PYTHON) -m venv --clear $(OLDEST)
+	$(OLDEST)/bin/python -m pip --disable-pip-version-check install --quiet uv
+	VIRTUAL_ENV=$(OLDEST) $(OLDEST)/bin/uv pip install --quiet --resolution lowest-direct --editable '.[dev]'
 	@touch $@

@@ -2,14 +2,19 @@
 
 A kernel is compiled by a process of its own (`precompile`), which leaves it in the cache. A process
 that compiles it runs other machine code than one that loads it: of the copies of an inner function
-it links another one, whose sums may be ordered differently, and answers differ in the last bit. So
-all processes load it. (One that has compiled an inner function itself, as tests do, still links
-that.)
+it links another one, whose sums may be ordered differently, and answers may differ in the last
+bit. So all processes load it. (One that has compiled an inner function itself, as tests do, still
+links that.)
 
 numba's own cache notices a changed function, but neither a changed callee in another file nor a
 damaged file, and looks for code by the path and age of its source. Here a folder belongs to one set
 of sources and kind of machine, wherever the sources lie, it has one file per function and
 signature, with a checksum, and a damaged file empties its folder.
+
+This module alone uses numba's private parts (`_PRIVATE`), for the cache and to compile sooner.
+Where one is missing, or under IMPACTLAB_PLAIN_NUMBA=1, every process compiles its kernels with
+numba's public options, which takes longer and gives the same bits: what is summed in another order
+in a second copy (`over_fibres` in solver/jit.py) is then inlined.
 """
 
 from __future__ import annotations
@@ -26,6 +31,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, TypeVar, cast
 from uuid import uuid4
@@ -46,9 +52,6 @@ except ValueError as _error:
     ) from None
 import llvmlite
 from llvmlite import binding
-from numba.core import codegen, serialize
-from numba.core.caching import _Cache
-from numba.core.compiler import CompileResult
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -56,6 +59,18 @@ log = logging.getLogger(__name__)
 
 _COMPILES = "IMPACTLAB_COMPILES"
 """Environment variable of a process that compiles one kernel, for others to load: its name."""
+_PRIVATE = (
+    "core.codegen.CPUCodeLibrary._finalize_final_module",
+    "core.codegen.CPUCodeLibrary.has_dynamic_globals",
+    "core.codegen.JITCPUCodegen.set_env",
+    "core.compiler.CompileResult._rebuild",
+    "core.compiler.CompileResult._reduce",
+    "core.options.DefaultOptions._nrt",
+    "core.options.DefaultOptions.no_cfunc_wrapper",
+    "core.options.DefaultOptions.no_cpython_wrapper",
+    "core.serialize.dumps",
+)
+"""Parts of numba that are not documented."""
 _SUFFIX = ".kernel"
 _DIGEST = hashlib.sha256().digest_size
 _FOLDER = re.compile(r"kernels-[0-9a-f]{16}(-[0-9a-f]{8})?(\.[0-9a-f]{32})?")
@@ -63,8 +78,28 @@ _UNUSED = 30 * 24 * 3600.0
 """Seconds after which the folder of other sources, or of another machine, is taken away."""
 
 
+def _uses_private_parts() -> bool:
+    if os.environ.get("IMPACTLAB_PLAIN_NUMBA", "0") != "0":
+        return False
+    try:
+        attrgetter(*_PRIVATE)(numba)
+    except AttributeError as missing:
+        log.warning(
+            "numba %s is not fully supported (%s), so each process compiles its kernels anew",
+            numba.__version__,
+            missing,
+        )
+        return False
+    return True
+
+
+_IS_PLAIN = not _uses_private_parts()
+
+
 def cache_folder(sources_hash: str) -> Path | None:
-    """Return the folder for these sources on this machine, or None where it cannot be made."""
+    """Return the folder for these sources on this machine, or None where none can be used."""
+    if _IS_PLAIN:
+        return None
     config: Any = numba.config  # numba's types do not list its settings
     name, features = config.CPU_NAME or binding.get_host_cpu_name(), config.CPU_FEATURES
     if features is None:
@@ -105,7 +140,7 @@ def _remove_unused(root: Path) -> None:
             continue
 
 
-class KernelCache(_Cache):
+class KernelCache:
     """The compiled forms of one function, as numba's dispatchers ask for them."""
 
     def __init__(self, folder: Path, name: str) -> None:
@@ -127,7 +162,7 @@ class KernelCache(_Cache):
         if _COMPILES in os.environ or (payload := _read(self._path(sig))) is None:
             return None
         target_context.refresh()
-        rebuild: Any = CompileResult._rebuild
+        rebuild: Any = numba.core.compiler.CompileResult._rebuild
         return rebuild(target_context, *pickle.loads(payload))
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -136,7 +171,7 @@ class KernelCache(_Cache):
             return
         path = self._path(sig)
         part = path.with_name(f"{path.name}.{uuid4().hex}")
-        dumps: Any = serialize.dumps  # without types, as `_rebuild` above
+        dumps: Any = numba.core.serialize.dumps  # without types, as `_rebuild` above
         payload = dumps(data._reduce())
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -223,16 +258,19 @@ class Compiler:
             called = from_python or os.environ.get(_COMPILES, name) == name
             if called:
                 _CALLED.add(function.__qualname__)
+            private = {
+                "_nrt": allocates,
+                "no_cfunc_wrapper": True,
+                "no_cpython_wrapper": not called,
+            }
             dispatcher = jit(
                 nogil=True,
                 error_model="numpy",
                 fastmath=fastmath,
                 forceinline=inline,
-                _nrt=allocates,
-                no_cfunc_wrapper=True,
-                no_cpython_wrapper=not called,
+                **({} if _IS_PLAIN else private),
             )(function)
-            if kept and called and self.folder is not None and dispatcher is not function:
+            if kept and called and self.folder is not None and hasattr(dispatcher, "_cache"):
                 dispatcher._cache = KernelCache(self.folder, name)
             return cast(Function, dispatcher)
 
@@ -248,8 +286,8 @@ def _emit_only_called() -> None:
 
     numba makes it of every function, for a quarter of the time; the kernel has its own copies.
     """
-    library: Any = codegen.CPUCodeLibrary
-    machine: Any = codegen.JITCPUCodegen
+    library: Any = numba.core.codegen.CPUCodeLibrary
+    machine: Any = numba.core.codegen.JITCPUCodegen
     finalize, set_env = library._finalize_final_module, machine.set_env
 
     def finalize_called(self: Any) -> None:
@@ -264,7 +302,7 @@ def _emit_only_called() -> None:
     library._finalize_final_module, machine.set_env = finalize_called, set_env_of_called
 
 
-if _COMPILES in os.environ:
+if _COMPILES in os.environ and not _IS_PLAIN:
     _emit_only_called()
 
 

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver import RULES
-from impactlab.solver.jit import allocating, called_from_python, compiled, vectorised
+from impactlab.solver.jit import allocating, called_from_python, compiled, over_fibres
 from impactlab.solver.strain_rate import CowperSymonds, overstress_ratio
 from impactlab.solver.types import ELASTIC, Array, Record
 
@@ -182,7 +182,7 @@ def with_rate(section: FibreSection, case: Record) -> FibreSection:
     )
 
 
-@vectorised
+@over_fibres
 def return_mapping(
     strain: float, plastic_strain: float, peeq: float, E: float, S_y: float, H_i: float, H_k: float
 ) -> tuple[float, float]:
@@ -196,7 +196,7 @@ def return_mapping(
     return plastic_strain, peeq
 
 
-@vectorised
+@over_fibres
 def elastic_range(
     plastic_strain: float, peeq: float, E: float, S_y: float, H_i: float, H_k: float
 ) -> tuple[float, float]:
@@ -218,7 +218,7 @@ def dissipated_energy(peeq: float, S_y: float, H_i: float) -> float:
     return (S_y + 0.5 * H_i * peeq) * peeq
 
 
-@vectorised
+@over_fibres
 def bend(
     section: FibreSection, kappa: float, plastic_strain: Array, peeq: Array, i: int
 ) -> tuple[float, float, float]:

@@ -32,7 +32,7 @@ def test_other_sources_and_another_processor_have_other_folders(root, monkeypatc
     mine = jit.cache_folder(SOURCES)
     assert mine == jit.cache_folder(SOURCES)
     others = jit.cache_folder(OTHERS)
-    monkeypatch.setattr(numba.config, "CPU_NAME", "generic")
+    monkeypatch.setattr(numba.config, "CPU_NAME", "another")
     elsewhere = jit.cache_folder(SOURCES)
     monkeypatch.setattr(numba.config, "CPU_FEATURES", "")
     plain = jit.cache_folder(SOURCES)
