@@ -104,6 +104,8 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[
         note = (
             "Variation: the variance over the grid; a parameter explains that of its mean effect."
         )
+        if "nodes" in runs.coords and "numerical_uncertainty" not in analysis:
+            note += " The numerical uncertainty is not known: impactlab recommend measures it."
     if limits := limit_entries(runs, analysis):
         level, even = access.confidence(analysis), spread_evenly(runs)
         note = f"Above a limit: probability and its {level} interval{even}. {note}"

@@ -11,7 +11,7 @@ import xarray as xr
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.axes import NODES
 from impactlab.figures.convergence import _NODES as NODES_FIGURE
-from impactlab.report.answer import LINES, answers
+from impactlab.report.answer import LINES, answers, entries
 from impactlab.report.convergence import convergence
 
 
@@ -38,6 +38,12 @@ def test_of_a_grid_gives_ranges_by_what_drives_them(velocity_study: Any) -> None
     assert lines[0].startswith("Impact velocity explains 95 to 100 % of the variation")
     assert ": peak force 2 to 193 kN, contact duration 0.212 to 0.528 ms" in lines[0]
     assert answers(velocity_study[0]) == lines, "runs alone are analysed"
+    runs, analysis = velocity_study
+    unknown = "The numerical uncertainty is not known"
+    assert unknown in entries(runs, analysis)[1]
+    names = list(runs.attrs["responses"])
+    shares = xr.DataArray(np.full(len(names), 0.01), {"response": names}, "response")
+    assert unknown not in entries(runs, analysis.assign(numerical_uncertainty=shares))[1]
 
 
 def test_of_a_convergence_study_gives_the_least_grid_however_bad_others_are() -> None:
