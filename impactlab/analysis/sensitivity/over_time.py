@@ -1,7 +1,7 @@
 """Sobol indices of histories at each time, and generalised indices of whole histories.
 
 At each time the estimators are those of the scalar responses. A generalised index is the integral
-over time of the numerator of an index, divided by the integral of the variance: the mean of the
+over time of the numerator of an index, divided by the integral of its denominator: the mean of the
 indices, weighted by the variance. Lamboni et al. (2011), Reliab. Eng. Syst. Saf. 96, 450, define it
 for outputs on a grid of times; Gamboa et al. (2014), Electron. J. Stat. 8, 575 (arXiv:1311.1797),
 for functions. (Of both, no more than abstracts was read; R's sensitivity::sobolMultOut has the
@@ -23,7 +23,15 @@ import xarray as xr
 from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity.imputation import MOST_IMPUTED
 from impactlab.analysis.sensitivity.method import half_width, leave_one_out
-from impactlab.analysis.sensitivity.sobol import FEWEST, check, step
+from impactlab.analysis.sensitivity.sobol import (
+    FEWEST,
+    JANON,
+    JANSEN,
+    check,
+    ratios,
+    statistics,
+    step,
+)
 from impactlab.analysis.sensitivity.verdict import WIDE, SensitivityVerdict, inconsistent
 from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
 from impactlab.types import Floats
@@ -33,9 +41,8 @@ SHOWN = ("contact_force", "midspan_deflection")  # the histories that get indice
 ROWS = 512  # base samples that are read together
 CELLS = 4_000_000
 """Numbers of an array in memory, 32 MB: it bounds the times that are treated together."""
-_2010 = "Saltelli et al. (2010), Comput. Phys. Commun. 181, 259, Table 2"
 _2014 = "Gamboa et al. (2014), Electron. J. Stat. 8, 575"
-_ORDERS = {"first_order": ("first-order", f"{_2010} (b)"), "total_order": ("total", f"{_2010} (f)")}
+_ORDERS = {"first_order": ("first-order", JANON), "total_order": ("total", JANSEN)}
 
 
 class HistoryVerdict(Verdict):
@@ -137,15 +144,13 @@ class Sums:
     """Sums over the replicates of the sample, at some times.
 
     Values are counted from `origin` (time,), one run's, so that their squares do not cancel.
-    replicates: (replicate, column, time). Columns: number of base samples; mean of all runs of
-    one; a, b, a^2, b^2 of the runs at A and B; then for each factor: the run ab at A with the
-    factor from B; b (ab - a); (a - ab)^2 / 2.
+    replicates: (replicate, column, time): the number of base samples, then sobol.statistics.
     """
 
     replicates: Floats
     origin: Floats
 
-    def parts(self) -> tuple[Parts, Floats, Floats]:
+    def parts(self, factors: int) -> tuple[Parts, Floats, Floats]:
         """Return the parts of the indices, mean and number of base samples (time,).
 
         The parts have an axis in front: of all base samples, then without each replicate.
@@ -153,38 +158,38 @@ class Sums:
         sums = leave_one_out(self.replicates)
         number = sums[0, 0]
         with np.errstate(invalid="ignore", divide="ignore"):  # no base sample at all: NaN
-            means = sums / sums[:, :1]
-        parts = Parts.of(means, means[0, 1], self.origin)
-        return parts, self.origin + (means[0, 2] + means[0, 3]) / 2, number
+            means = np.moveaxis(sums[:, 1:] / sums[:, :1], 1, -1)
+        mean = self.origin + (means[0, :, 0] + means[0, :, 1]) / 2
+        return Parts.of(means, factors, self.origin), mean, number
 
 
 @dataclass(frozen=True)
 class Parts:
-    """Numerators of first order and total (..., 2 factors, time), and variances (..., time)."""
+    """Numerators and denominators of first and total orders, and variances over A and B.
+
+    numerators, denominators: (..., time, 2 factors). variance: (..., time), and where it is more
+    than round-off.
+    """
 
     numerators: Floats
+    denominators: Floats
     variance: Floats
     varies: Any
 
     @classmethod
-    def of(cls, means: Floats, centre: Floats, origin: Floats) -> Parts:
-        """Return the parts from means of the columns of `Sums`, (..., column, time).
-
-        Outputs are centred on the mean of all runs, as for scalar responses: `centre` (time,).
-        """
-        a, b, squared_a, squared_b = (means[..., at, :] for at in range(2, 6))
+    def of(cls, means: Floats, factors: int, origin: Floats) -> Parts:
+        """Return the parts from means of the statistics, (..., time, column)."""
+        a, b, squared_a, squared_b = (means[..., column] for column in range(4))
         squares = (squared_a + squared_b) / 2
         variance = squares - ((a + b) / 2) ** 2
-        ab, first, total = np.split(means[..., 6:, :], 3, axis=-2)
-        first = first - centre * (ab - a[..., None, :])
         level = ROUND_OFF**2 * (origin + (a + b) / 2) ** 2
         varies = variance > np.maximum(level, ROUND_OFF * squares)
-        return cls(np.concatenate([first, total], axis=-2), variance, varies)
+        return cls(*ratios(means, factors), variance, varies)
 
     def at_times(self) -> Floats:
-        """Return the indices at each time, (..., 2 factors, time); NaN where nothing varies."""
-        variance = np.where(self.varies, self.variance, np.nan)
-        return np.asarray(self.numerators / variance[..., None, :])
+        """Return the indices at each time, (..., time, 2 factors); NaN where nothing varies."""
+        denominators = np.where(self.varies[..., None], self.denominators, np.nan)
+        return np.asarray(self.numerators / denominators)
 
 
 def trapezoid(times: Floats) -> Floats:
@@ -199,30 +204,33 @@ def sums(sample: Sample, name: str, good: Any, times: slice, most: int | None = 
     good: base samples without a failed run, (base samples,). most: base samples that are read
     together; the sums do not depend on it.
     """
-    base, size, factors = len(good), step(sample), len(sample.factors)
+    base, size = len(good), step(sample)
     column = sample.runs[name].variable.transpose("run", "time")[:, times]
     first = int(np.argmax(good)) * size
     origin = np.nan_to_num(np.asarray(column[first].values, float))
     place = np.arange(base) % sample.number("replicates")
-    total = np.zeros((place.max() + 1, 6 + 3 * factors, len(origin)))
+    total = np.zeros((place.max() + 1, _columns(sample), len(origin)))
     for start in range(0, base, most or ROWS):
         end = min(start + (most or ROWS), base)
         block = np.asarray(column[start * size : end * size].values, float)
         block = block.reshape(end - start, size, -1)
-        rows = _statistics(block - origin, good[start:end], factors)
+        rows = _statistics(block - origin, good[start:end], sample)
         for row, at in zip(rows, place[start:end], strict=True):
             total[at] += row
     return Sums(total[np.bincount(place, good) > 0], origin)
 
 
-def _statistics(block: Floats, good: Any, factors: int) -> Floats:
+def _columns(sample: Sample) -> int:
+    return 6 + 4 * len(sample.factors) * (1 + sample.number("second_order"))
+
+
+def _statistics(block: Floats, good: Any, sample: Sample) -> Floats:
     """Return the columns of `Sums`, (base samples, column, time), 0 of those to leave out."""
     # block: (base samples, runs of one, time), in the order of the sample
-    kept = np.isfinite(block).all(axis=1) & good[:, None]
-    block = np.where(kept[:, None], block, 0.0)
-    a, ab, b = block[:, :1], block[:, 1 : 1 + factors], block[:, -1:]
-    columns = [kept[:, None], block.mean(axis=1, keepdims=True), a, b, a**2, b**2]
-    return np.concatenate([*columns, ab, b * (ab - a), (a - ab) ** 2 / 2], axis=1)
+    complete = np.isfinite(block).all(axis=1) & good[:, None]
+    block = np.where(complete[:, None], block, 0.0)
+    columns = statistics(block, len(sample.factors), bool(sample.number("second_order")))
+    return np.concatenate([complete[:, None], columns], axis=1)
 
 
 def _of_history(sample: Sample, name: str) -> dict[str, Any]:
@@ -231,7 +239,7 @@ def _of_history(sample: Sample, name: str) -> dict[str, Any]:
     failed = (runs["status"].values & status_bits([])) != 0
     good = ~failed.reshape(-1, step(sample)).any(axis=1)
     times = np.asarray(runs["time"].values, float)
-    size, columns = len(times), 6 + 3 * factors
+    size, columns = len(times), _columns(sample)
     found: dict[str, Any] = {
         "at_times": np.full((size, 2 * factors), np.nan),
         "at_times_interval": np.full((size, 2 * factors), np.nan),
@@ -239,12 +247,12 @@ def _of_history(sample: Sample, name: str) -> dict[str, Any]:
         "history_deviation": np.full(size, np.nan),
     }
     weights, numbers = trapezoid(times), np.zeros(size)
-    integrals = np.zeros((1, 2 * factors + 1))  # (1 + replicates, 2 factors + 1)
+    integrals = np.zeros((1, 2, 2 * factors))  # (1 + replicates, part, 2 factors)
     together = max(1, CELLS // (columns * min(ROWS, len(good))))
     for start in range(0, size if good.any() else 0, together):
         part = slice(start, min(start + together, size))
-        parts, mean, numbers[part] = sums(sample, name, good, part).parts()
-        at_times = np.moveaxis(parts.at_times(), -1, 1)
+        parts, mean, numbers[part] = sums(sample, name, good, part).parts(factors)
+        at_times = parts.at_times()
         found["at_times"][part] = at_times[0]
         margins = half_width(at_times[1:], sample.confidence)
         found["at_times_interval"][part] = np.where(np.isnan(at_times[0]), np.nan, margins)
@@ -256,9 +264,10 @@ def _of_history(sample: Sample, name: str) -> dict[str, Any]:
 
 
 def _integrated(parts: Parts, weights: Floats) -> Floats:
-    """Return integrals over time of numerators and variance, (..., 2 factors + 1)."""
-    together = np.concatenate([parts.numerators, parts.variance[..., None, :]], axis=-2)
-    return np.asarray(np.where(parts.varies[..., None, :], together, 0.0) @ weights)
+    """Return integrals over time of numerators and denominators, (..., 2, 2 factors)."""
+    together = np.stack([parts.numerators, parts.denominators], axis=-3)
+    varying = np.where(parts.varies[..., None, :, None], together, 0.0)
+    return np.asarray(np.einsum("...tf,t->...f", varying, weights))
 
 
 def _named(
@@ -267,8 +276,8 @@ def _named(
     """Return the variables of a history, with their verdicts."""
     base, factors = sample.number("base_samples"), len(sample.factors)
     few = base - left_out < FEWEST or left_out > MOST_IMPUTED * base
-    variance = np.where(integrals[:, -1:] > 0, integrals[:, -1:], np.nan)  # NaN: nothing varies
-    indices = integrals[:, :-1] / variance
+    numerators, denominators = integrals[:, 0], integrals[:, 1]
+    indices = numerators / np.where(denominators > 0, denominators, np.nan)  # NaN: nothing varies
     whole, margins = indices[0], half_width(indices[1:], sample.confidence)
     at_times, at_margins = found["at_times"], found["at_times_interval"]
     if few:

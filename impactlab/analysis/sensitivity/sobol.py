@@ -66,14 +66,26 @@ class Outputs:
     def _statistics(self, interactions: bool, rows: slice) -> Floats:
         """Return the columns whose means the estimators take, (base samples, columns)."""
         table = (self.table[rows] - self.mean) / self.deviation
-        a, ab, ba, b = np.split(table, [1, 1 + self.factors, table.shape[1] - 1], axis=1)
-        columns = [a, b, a**2, b**2, a * b, ab, ab**2, b * ab, (a - ab) ** 2 / 2]
-        if self.second:
-            columns += [ba, ba**2, a * ba, (b - ba) ** 2 / 2]
-        if self.second and interactions:
-            first, second = np.triu_indices(self.factors, 1)
-            columns.append((ba[:, first] * ab[:, second] + ba[:, second] * ab[:, first]) / 2)
-        return np.concatenate(columns, axis=1)
+        columns = statistics(table, self.factors, self.second)
+        if not (self.second and interactions):
+            return columns
+        _, ab, ba, _ = np.split(table, [1, 1 + self.factors, table.shape[1] - 1], axis=1)
+        first, second = np.triu_indices(self.factors, 1)
+        pairs = (ba[:, first] * ab[:, second] + ba[:, second] * ab[:, first]) / 2
+        return np.concatenate([columns, pairs], axis=1)
+
+
+def statistics(outputs: Floats, factors: int, second: bool) -> Floats:
+    """Return the columns whose means give first and total orders, (base samples, column, ...).
+
+    outputs: (base samples, runs of one, ...), in the order of the sample; second: whether runs BA,
+    at B with a factor from A, are among them.
+    """
+    a, ab, ba, b = np.split(outputs, [1, 1 + factors, outputs.shape[1] - 1], axis=1)
+    columns = [a, b, a**2, b**2, a * b, ab, ab**2, b * ab, (a - ab) ** 2 / 2]
+    if second:
+        columns += [ba, ba**2, a * ba, (b - ba) ** 2 / 2]
+    return np.concatenate(columns, axis=1)
 
 
 def step(sample: Sample) -> int:
@@ -81,44 +93,59 @@ def step(sample: Sample) -> int:
     return (2 if sample.number("second_order") else 1) * len(sample.factors) + 2
 
 
-def estimates(means: Floats, factors: int) -> dict[str, Floats]:
-    """Return indices from the means of the statistics, (..., columns); NaN where nothing varies.
+def ratios(means: Floats, factors: int) -> tuple[Floats, Floats]:
+    """Return numerators and denominators of first and total orders, both (..., 2 factors).
 
-    first_order, total_order (..., factor); second_order (..., pair); base_correlation (...).
-
-    AB and B share the factor alone: their covariance, over the mean of their variances, is the
-    first-order index; likewise that of A and AB is the total order of the other factors (Janon et
-    al. 2014, eq. 6), and with second order BA and A, and B and BA, give a second estimate each.
-    The covariance of A and B, 0 for an endless sample, is a control variate: the errors of the
-    covariance of AB and B follow it as far as AB follows A, by 1 less the total order. So is it
-    for BA and AB, which share two factors, by 1 less the total orders of both. Of a parameter that
-    the model never sees, AB = A, and all indices are zero to the last digit.
+    means: of the `statistics`, (..., column). AB and B share the factor alone: their covariance,
+    over the mean of their variances, is its first order, and half the mean squared difference of A
+    and AB its total order (Janon et al. 2014, eq. 6; Jansen 1999). BA, where it is given, makes a
+    second pair of each. The covariance of A and B, 0 for an endless sample, is a control variate:
+    the errors of that of AB and B follow it as far as AB follows A, by 1 less the total order. Of
+    a parameter that the model never sees, AB = A, and both are zero to the last digit.
     """
     a, b, squared_a, squared_b, product = np.moveaxis(means[..., :_ALONE], -1, 0)
-    base, variances = product - a * b, np.stack([squared_b - b**2, squared_a - a**2], axis=-1)
-    count = 1 if means.shape[-1] == _ALONE + 4 * factors else 2
-    halves, pairs = np.split(means[..., _ALONE:], [4 * count * factors], axis=-1)
-    halves = halves.reshape(*means.shape[:-1], count, 4, factors)
+    halves = means[..., _ALONE:].reshape(*means.shape[:-1], -1, 4, factors)
     mean, square, shared, apart = np.moveaxis(halves, -2, 0)  # (..., half, factor) each
+    count = mean.shape[-2]
+    partner = np.stack([b, a], axis=-1)[..., :count, None]
+    variances = np.stack([squared_b - b**2, squared_a - a**2], axis=-1)
     scatter = square - mean**2
     with_same = (variances[..., :count, None] + scatter).sum(axis=-2) / 2
     with_others = (variances[..., ::-1][..., :count, None] + scatter).sum(axis=-2) / 2
-    total = apart.sum(axis=-2) / _positive(with_others)
-    covariance = (shared - np.stack([b, a], axis=-1)[..., :count, None] * mean).sum(axis=-2)
-    control = count * base[..., None]
-    first = (covariance - np.clip(1 - total, 0, 1) * control) / _positive(with_same)
+    total = apart.sum(axis=-2)
+    weight = np.clip(1 - total / _positive(with_others), 0, 1)
+    control = count * (product - a * b)[..., None]
+    first = (shared - partner * mean).sum(axis=-2) - weight * control
+    return np.concatenate([first, total], axis=-1), np.concatenate([with_same, with_others], -1)
+
+
+def estimates(means: Floats, factors: int) -> dict[str, Floats]:
+    """Return indices from the means of all columns, (..., column); NaN where nothing varies.
+
+    first_order, total_order (..., factor): see `ratios`; second_order (..., pair): the covariance
+    of BA and AB, which share two factors, by the same rule, less both first orders;
+    base_correlation (...): of A and B.
+    """
+    halves = 2 if means.shape[-1] > _ALONE + 4 * factors else 1
+    columns, pairs = np.split(means, [_ALONE + 4 * halves * factors], axis=-1)
+    numerators, denominators = ratios(columns, factors)
+    first, total = np.split(numerators / _positive(denominators), 2, axis=-1)
+    a, b, squared_a, squared_b, product = np.moveaxis(means[..., :_ALONE], -1, 0)
+    covariance, variance = product - a * b, (squared_a + squared_b - a**2 - b**2) / 2
     found = {
         "first_order": first,
         "total_order": total,
-        "base_correlation": base / _positive(variances.mean(axis=-1)),
+        "base_correlation": covariance / _positive(variance),
     }
     if pairs.shape[-1]:
         i, j = np.triu_indices(factors, 1)
-        means_of_pairs = (mean[..., 0, i] * mean[..., 1, j] + mean[..., 0, j] * mean[..., 1, i]) / 2
+        halved = columns[..., _ALONE:].reshape(*means.shape[:-1], 2, 4, factors)
+        ab, ba = np.moveaxis(halved[..., 0, :], -2, 0)
+        scatter = (halved[..., 1, :] - halved[..., 0, :] ** 2).sum(axis=-2)
         weight = np.clip(1 - total[..., i] - total[..., j], 0, 1)
-        closed = pairs - means_of_pairs - weight * base[..., None]
-        scatters = scatter.sum(axis=-2)
-        closed = closed / _positive((scatters[..., i] + scatters[..., j]) / 4)
+        closed = pairs - (ab[..., i] * ba[..., j] + ab[..., j] * ba[..., i]) / 2
+        closed = closed - weight * covariance[..., None]
+        closed = closed / _positive((scatter[..., i] + scatter[..., j]) / 4)
         found["second_order"] = closed - first[..., i] - first[..., j]
     return found
 
@@ -130,21 +157,21 @@ def _positive(variance: Floats) -> Floats:
 HALVINGS = 5  # number of halvings of the sample that show how its indices settle: from N/32 on
 FEWEST = 8  # base samples below which halves are not shown
 CHANCE = 0.001  # of independent base samples whose correlation exceeds its noise
-_2014 = (
+JANON = (
     "Janon et al. (2014), ESAIM Probab. Stat. 18, 342, eq. 6, with the covariance of both base "
     "samples as control variate"
 )
-_1999 = "Jansen (1999), Comput. Phys. Commun. 117, 35, with the variance of the same runs"
+JANSEN = "Jansen (1999), Comput. Phys. Commun. 117, 35, with the variance of the same runs"
 _NESTED = "from the first base samples alone, which are a smaller sample of the same kind"
 _INDICES = {
-    "first_order": Index("first-order Sobol index", _2014),
-    "total_order": Index("total-order Sobol index", _1999),
-    "second_order": Index("second-order Sobol index", _2014, PAIR),
+    "first_order": Index("first-order Sobol index", JANON),
+    "total_order": Index("total-order Sobol index", JANSEN),
+    "second_order": Index("second-order Sobol index", JANON, PAIR),
     "first_order_by_samples": Index(
-        "first-order Sobol index by base samples", _2014, BY_SAMPLES, comment=_NESTED
+        "first-order Sobol index by base samples", JANON, BY_SAMPLES, comment=_NESTED
     ),
     "total_order_by_samples": Index(
-        "total-order Sobol index by base samples", _1999, BY_SAMPLES, comment=_NESTED
+        "total-order Sobol index by base samples", JANSEN, BY_SAMPLES, comment=_NESTED
     ),
     "base_correlation": Index(
         "correlation of the response between the two base samples, A and B",

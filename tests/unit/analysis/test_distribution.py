@@ -18,7 +18,6 @@ from impactlab.analysis.distribution import (
     analysis,
     cumulative,
     drawn_outputs,
-    draws,
     write_csv,
 )
 from impactlab.analysis.responses import Sample
@@ -82,7 +81,7 @@ def test_of_a_saltelli_sample_only_a_and_b_are_draws() -> None:
     inputs = dict(zip("abc", drawn.T, strict=True))
     attrs = {"method": "sobol", "base_samples": 64, "second_order": 1, "replicates": 8}
     runs = runs_of(inputs, {"y": drawn.sum(axis=1)}, {"y": 2.0}, **attrs)
-    rows = draws(Sample.of(runs))
+    rows = Sample.of(runs).draws
     assert rows.size == 2 * 64
     for column in inputs.values():  # every other run has a value in common with one of these
         assert np.unique(column[rows]).size == rows.size == np.unique(column).size

@@ -8,6 +8,7 @@ import pytest
 
 import impactlab as il
 from impactlab.fem3d.solver import quarter_mesh, solve_on
+from impactlab.simulate import run_dataset
 from impactlab.solver import outputs
 from impactlab.variables import HISTORIES, RESPONSES, STATUS_FLAGS
 
@@ -25,7 +26,7 @@ def answer(mesh):
 
 
 def test_what_the_beam_models_answer_too_has_the_same_names_and_units(answer):
-    beam = il.simulate(
+    beam = run_dataset(
         il.paper_impact(5.0), il.Discretisation(nodes=21), duration=25e-6, samples=101
     )
     shared = {*HISTORIES, *RESPONSES} & set(answer.data_vars)
