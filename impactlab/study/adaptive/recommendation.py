@@ -91,27 +91,29 @@ def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = 
     cases = corner_cases(study)
     pilots = partial(solve_along, study, cases, folder, engine)
     with locked(folder):  # over all pilot runs
-        found = _evidence(study, pilots, wishes.tolerance, wishes.responses or study.responses)
+        evidence = _evidence(study, pilots, wishes.tolerance, wishes.responses or study.responses)
     attrs: dict[str, Any] = {"study": study.name, "study_sha256": study.sha256}
     attrs |= {"kernels_sha256": SOURCES_HASH, "tolerance": wishes.tolerance}
-    chosen = recommended_grid(found, grid) if study.auto else grid
+    chosen = recommended_grid(evidence, grid) if study.auto else grid
     if chosen is not None:
-        at = {axis: getattr(chosen, axis) for axis in AXES}
-        parts = (found[f"{axis}_uncertainty"].sel({axis: at[axis]}, drop=True) for axis in AXES)
+        levels = {axis: getattr(chosen, axis) for axis in AXES}
+        parts = (
+            evidence[f"{axis}_uncertainty"].sel({axis: levels[axis]}, drop=True) for axis in AXES
+        )
         amount = reduce(add, parts)
-        share = relative(amount, found["nodes_value"].isel(nodes=-1, drop=True)).max("case")
-        found = found.assign(grid_uncertainty=amount, grid_relative=share)
-        attrs |= {f"grid_{axis}": level for axis, level in at.items()}
+        share = relative(amount, evidence["nodes_value"].isel(nodes=-1, drop=True)).max("case")
+        evidence = evidence.assign(grid_uncertainty=amount, grid_relative=share)
+        attrs |= {f"grid_{axis}": level for axis, level in levels.items()}
     labels = {name: ("case", np.array(values)) for name, values in cases.items()}
-    return found.assign_coords(labels).assign_attrs(attrs | provenance())
+    return evidence.assign_coords(labels).assign_attrs(attrs | provenance())
 
 
-def recommended_grid(found: xr.Dataset, base: Discretisation) -> Discretisation | None:
+def recommended_grid(evidence: xr.Dataset, base: Discretisation) -> Discretisation | None:
     """Return the base with nodes, points and courant of the recommended candidate, or None."""
-    at = int(found["recommended"])
-    if at < 0:
+    best = int(evidence["recommended"])
+    if best < 0:
         return None
-    nodes, points, courant = (found[f"candidate_{axis}"].values[at].item() for axis in AXES)
+    nodes, points, courant = (evidence[f"candidate_{axis}"].values[best].item() for axis in AXES)
     return replace(base, nodes=int(nodes), points=int(points), courant=courant)
 
 
@@ -127,63 +129,65 @@ def relative(amount: xr.DataArray, value: xr.DataArray) -> xr.DataArray:
 def _evidence(
     study: Study, pilots: Pilots, tolerance: float, responses: Collection[str]
 ) -> xr.Dataset:
-    own = study.discretisation
-    levels = _refinement_levels(own, study.auto is not None)
-    found = xr.Dataset(_axis(pilots, "nodes", levels, own))
-    asked = found["response"].isin(list(responses))
+    grid = study.discretisation
+    levels = _refinement_levels(grid, study.auto is not None)
+    evidence = xr.Dataset(_axis(pilots, "nodes", levels, grid))
+    requested = evidence["response"].isin(list(responses))
     # the fewest nodes that suffice for all requested responses for which any do
-    meets = _worst(found, "nodes") <= tolerance
-    enough = (meets | ~meets.any("nodes") | ~asked).all("response")
-    fewest = int(found["nodes"].values[np.argmax(enough.values)])
-    middle = replace(own, nodes=fewest)
-    found = found.assign(_axis(pilots, "points", levels, middle))
-    found = found.assign(_axis(pilots, "courant", levels, middle)).assign(asked=asked)
-    found = found.assign(_grid_options(found, study, tolerance))
+    meets = _worst(evidence, "nodes") <= tolerance
+    enough = (meets | ~meets.any("nodes") | ~requested).all("response")
+    fewest = int(evidence["nodes"].values[np.argmax(enough.values)])
+    middle = replace(grid, nodes=fewest)
+    evidence = evidence.assign(_axis(pilots, "points", levels, middle))
+    evidence = evidence.assign(_axis(pilots, "courant", levels, middle)).assign(asked=requested)
+    evidence = evidence.assign(_grid_options(evidence, study, tolerance))
     # the first candidate that is fine enough for all requested responses that any is for
-    wanted = asked & found["reached"]
-    fine = ((found["candidate_uncertainty"] <= tolerance) | ~wanted).all("response").values
-    best = int(np.argmax(fine)) if wanted.any() and fine.any() else -1
-    found = found.assign(recommended=best)
-    chosen = recommended_grid(found, own)
+    attainable = requested & evidence["reached"]
+    fine = ((evidence["candidate_uncertainty"] <= tolerance) | ~attainable).all("response").values
+    best = int(np.argmax(fine)) if attainable.any() and fine.any() else -1
+    evidence = evidence.assign(recommended=best)
+    chosen = recommended_grid(evidence, grid)
     if chosen is None:
-        difference = xr.full_like(found["nodes_value"].isel(nodes=0, drop=True), np.nan)
+        difference = xr.full_like(evidence["nodes_value"].isel(nodes=0, drop=True), np.nan)
     else:
-        last = replace(own, points=int(levels["points"][-1]), courant=levels["courant"][-1])
+        last = replace(grid, points=int(levels["points"][-1]), courant=levels["courant"][-1])
         ours, _ = pilots("nodes", (chosen.nodes,), chosen)
         theirs, _ = pilots("nodes", levels["nodes"][-1:], last)
         difference = abs(ours.isel(nodes=0, drop=True) - theirs.isel(nodes=0, drop=True))
-    return found.assign(check_difference=difference)
+    return evidence.assign(check_difference=difference)
 
 
-def _refinement_levels(own: Discretisation, auto: bool) -> Levels:
+def _refinement_levels(grid: Discretisation, auto: bool) -> Levels:
     """Return the levels to try for a study of this discretisation.
 
     Spacings are halved, with one level about half-way between. The study's own spacing, half of it
     and a quarter are levels, too, even beyond the finest: finer levels show its error. auto: it has
     none of its own.
     """
-    given = () if auto else tuple((own.nodes - 1) * factor for factor in (1, 2, 4))
-    at, finest = _SPACINGS[own.scheme]
-    spans, most = {*given}, max(finest, *given, 0)
-    while at <= finest:
-        spans |= {at, 3 * at // 4 * 2}
-        at *= 2
-    courants = {own.courant / factor for factor in (1, 2, 4)} | {*_COURANTS}
+    study_spans = () if auto else tuple((grid.nodes - 1) * factor for factor in (1, 2, 4))
+    span, finest = _SPACINGS[grid.scheme]
+    spans, most = {*study_spans}, max(finest, *study_spans, 0)
+    while span <= finest:
+        spans |= {span, 3 * span // 4 * 2}
+        span *= 2
+    courants = {grid.courant / factor for factor in (1, 2, 4)} | {*_COURANTS}
     return {
-        "nodes": tuple(sorted(each + 1 for each in spans if each <= most)),
-        "points": tuple(sorted({*_POINTS, own.points})),
+        "nodes": tuple(sorted(intervals + 1 for intervals in spans if intervals <= most)),
+        "points": tuple(sorted({*_POINTS, grid.points})),
         "courant": tuple(sorted(courants, reverse=True)),
     }
 
 
-def _axis(pilots: Pilots, axis: str, levels: Levels, at: Discretisation) -> dict[str, xr.DataArray]:
+def _axis(
+    pilots: Pilots, axis: str, levels: Levels, grid: Discretisation
+) -> dict[str, xr.DataArray]:
     """Return the values on all levels of an axis, and their uncertainty, infinite where unknown.
 
     Points and time step are judged by the differences to the costliest level: once fibres yield,
     the error is no power of the points; and changes with the time step at fixed nodes are too small
     (about 1e-6) and too irregular for one.
     """
-    values, without_limit = pilots(axis, levels[axis], at)
+    values, without_limit = pilots(axis, levels[axis], grid)
     finest_first = values.isel({axis: slice(None, None, -1)})
     spacings = 1.0 / (finest_first["nodes"].values.astype(float) - 1.0) if axis == "nodes" else None
 
@@ -192,32 +196,32 @@ def _axis(pilots: Pilots, axis: str, levels: Levels, at: Discretisation) -> dict
             return points.numerical_uncertainty(row)
         return numerical_uncertainty(row, spacings)[0]
 
-    found: xr.DataArray = xr.apply_ufunc(
+    uncertainties: xr.DataArray = xr.apply_ufunc(
         judge, finest_first, input_core_dims=[[axis]], output_core_dims=[[axis]], vectorize=True
     )
-    amounts = found.isel({axis: slice(None, None, -1)}).fillna(np.inf)
+    amounts = uncertainties.isel({axis: slice(None, None, -1)}).fillna(np.inf)
     return {f"{axis}_value": values, f"{axis}_uncertainty": amounts.where(~without_limit, np.inf)}
 
 
-def _grid_options(found: xr.Dataset, study: Study, tolerance: float) -> dict[str, xr.DataArray]:
-    """Return all combinations of the levels of `found`, the cheapest first.
+def _grid_options(evidence: xr.Dataset, study: Study, tolerance: float) -> dict[str, xr.DataArray]:
+    """Return all combinations of the levels of `evidence`, the cheapest first.
 
     Variables on (candidate): candidate_nodes, candidate_points, candidate_courant and
     candidate_cost, relative to the study's own discretisation; candidate_uncertainty (response,
     candidate), relative, the worst over the cases; reached (response), whether one meets the
     tolerance.
     """
-    levels = np.array(list(product(*(found[axis].values for axis in AXES))), dtype=float)
-    own = study.discretisation
-    together = np.vstack([levels, [own.nodes, own.points, own.courant]])
+    levels = np.array(list(product(*(evidence[axis].values for axis in AXES))), dtype=float)
+    grid = study.discretisation
+    together = np.vstack([levels, [grid.nodes, grid.points, grid.courant]])
     varied = dict(zip(AXES, together.T, strict=True))
-    cases = case_table(study.impact, own, duration=study.duration, varied=varied)
+    cases = case_table(study.impact, grid, duration=study.duration, varied=varied)
     *prices, ours = node_steps(cases) * (1.0 + _POINT_COST * cases["points"])
     price = np.array(prices) / ours
     order = np.argsort(price, kind="stable")
     sorted_levels = zip(AXES, levels[order].T, strict=True)
     columns = {axis: xr.DataArray(column, dims="candidate") for axis, column in sorted_levels}
-    parts = (_worst(found, axis).sel({axis: columns[axis]}).drop_vars(axis) for axis in AXES)
+    parts = (_worst(evidence, axis).sel({axis: columns[axis]}).drop_vars(axis) for axis in AXES)
     worst = reduce(add, parts).transpose("response", "candidate")
     return {f"candidate_{axis}": column for axis, column in columns.items()} | {
         "candidate_cost": xr.DataArray(price[order], dims="candidate"),
@@ -226,12 +230,12 @@ def _grid_options(found: xr.Dataset, study: Study, tolerance: float) -> dict[str
     }
 
 
-def _worst(found: xr.Dataset, axis: str) -> xr.DataArray:
-    reference = found["nodes_value"].isel(nodes=-1, drop=True)
-    return relative(found[f"{axis}_uncertainty"], reference).max("case")
+def _worst(evidence: xr.Dataset, axis: str) -> xr.DataArray:
+    reference = evidence["nodes_value"].isel(nodes=-1, drop=True)
+    return relative(evidence[f"{axis}_uncertainty"], reference).max("case")
 
 
-def apply_recommendation(study: Study, found: xr.Dataset) -> Study:
+def apply_recommendation(study: Study, evidence: xr.Dataset) -> Study:
     """Return a study that is `auto` with its recommended discretisation (see `recommend`).
 
     Raises StudyError where no discretisation meets the tolerance for a requested response, naming
@@ -239,19 +243,19 @@ def apply_recommendation(study: Study, found: xr.Dataset) -> Study:
     """
     auto = study.auto
     assert auto is not None
-    least = found["candidate_uncertainty"].min("candidate")
+    least = evidence["candidate_uncertainty"].min("candidate")
     missed = []
-    for name, share in least[(found["asked"] & ~found["reached"]).values].to_series().items():
+    for name, share in least[(evidence["asked"] & ~evidence["reached"]).values].to_series().items():
         best = f"{100 * share:.2g} % at best" if np.isfinite(share) else "nothing bounds its error"
         missed.append(f"{name} ({best})")
     if missed:
-        most, listed = int(found["nodes"].max()), ", ".join(missed)
+        most, listed = int(evidence["nodes"].max()), ", ".join(missed)
         reason = (
             f"no discretisation up to {most} nodes meets {100 * auto.tolerance:g} % for {listed}: "
             "raise tolerance, or list other responses under discretisation.auto.responses"
         )
         raise StudyError(Problem(str(study.path), "discretisation.auto", reason))
-    grid = recommended_grid(found, study.discretisation)
+    grid = recommended_grid(evidence, study.discretisation)
     assert grid is not None  # some response is requested, and all are reached
     return replace(study, discretisation=grid, auto=None)
 
@@ -263,16 +267,16 @@ def solve_along(
     engine: Engine,
     axis: str,
     levels: Sequence[float],
-    at: Discretisation,
+    grid: Discretisation,
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Solve the corner cases of a study with these values of nodes, points or courant.
 
-    folder: for the shards. levels: the values; the other two are those of `at`. Returns values on
+    folder: for the shards. levels: the values; the other two are those of `grid`. Returns values on
     (response, case, axis), NaN where a run failed, in SI units; and on (response, case), True where
     the model itself does not converge along this axis. Raises OSError when the disk is full or no
     scheduler answers.
     """
-    fixed = flatten(study.impact, at) | {"duration": study.duration}
+    fixed = flatten(study.impact, grid) | {"duration": study.duration}
     varied: dict[str, Any] = {name: ("case", np.array(values)) for name, values in cases.items()}
     varied["case"] = np.arange(len(next(iter(cases.values()))))
     varied[axis] = axis, np.array(levels)
@@ -284,8 +288,8 @@ def solve_along(
         attrs["solver"] = resolve_name("impactlab.study.solvers.own:solver_name")(study)
     runs = execute(described(xr.Dataset(coords=scalars | varied, attrs=attrs)), folder, engine)
     values = usable(runs).transpose("response", "case", axis)
-    others = set(values.coords) - {*values.dims, "response_units", "response_long_name"}
-    return values.drop_vars(others), without_limit(
+    coordinates = set(values.coords) - {*values.dims, "response_units", "response_long_name"}
+    return values.drop_vars(coordinates), without_limit(
         runs, values, NODES.growth if axis == "nodes" else None, axis
     )
 
@@ -300,14 +304,20 @@ def corner_cases(study: Study) -> dict[str, list[Value]]:
     one case.
     """
     varied = study.sampling.varied.items()
-    ends = {name: _ends(given) for name, given in varied if name not in AXES}
-    words = {name: values for name, values in ends.items() if isinstance(values[0], str)}
-    numbers = {name: values for name, values in ends.items() if name not in words}
-    signs, listed = corners(len(numbers)).tolist(), list(words.values())
+    ends = {name: _ends(entry) for name, entry in varied if name not in AXES}
+    choices = {name: values for name, values in ends.items() if isinstance(values[0], str)}
+    numbers = {name: values for name, values in ends.items() if name not in choices}
+    signs, listed = corners(len(numbers)).tolist(), list(choices.values())
     pairs: Iterable[tuple[Iterable[Value], list[int]]] = product(product(*listed), signs)
     if study.sampling.words:
         pairs = [
-            ([each[(turn + at * corner) % len(each)] for at, each in enumerate(listed)], row)
+            (
+                [
+                    options[(turn + index * corner) % len(options)]
+                    for index, options in enumerate(listed)
+                ],
+                row,
+            )
             for corner, row in enumerate(signs)
             for turn in range(max(map(len, listed)))
         ]
@@ -317,7 +327,7 @@ def corner_cases(study: Study) -> dict[str, list[Value]]:
         rows.append((*combination, *levels))
     if not ends:
         return {"velocity": [study.impact.velocity]}
-    return {name: [row[at] for row in rows] for at, name in enumerate([*words, *numbers])}
+    return {name: [row[index] for row in rows] for index, name in enumerate([*choices, *numbers])}
 
 
 def corners(count: int) -> NDArray[np.int64]:
@@ -333,14 +343,14 @@ def corners(count: int) -> NDArray[np.int64]:
     return np.concatenate([signs, middle])
 
 
-def _ends(given: Any) -> Sequence[Any]:
+def _ends(entry: Any) -> Sequence[Any]:
     """Return (least, middle, greatest) of a varied number, or all words."""
-    if isinstance(given, Distribution):
-        low, middle, high = given.quantile(np.array([_TAIL, 0.5, 1.0 - _TAIL])).tolist()
-        bounds = given.bounds()
+    if isinstance(entry, Distribution):
+        low, middle, high = entry.quantile(np.array([_TAIL, 0.5, 1.0 - _TAIL])).tolist()
+        bounds = entry.bounds()
         return bounds.get("low", low), middle, bounds.get("high", high)
-    given = given.values if isinstance(given, Choice) else given
-    if isinstance(given[0], str):
-        return tuple(given)
-    ordered = sorted(given)
+    entry = entry.values if isinstance(entry, Choice) else entry
+    if isinstance(entry[0], str):
+        return tuple(entry)
+    ordered = sorted(entry)
     return ordered[0], ordered[len(ordered) // 2], ordered[-1]

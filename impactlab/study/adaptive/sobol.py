@@ -66,13 +66,15 @@ def largest_interval(analysis: xr.Dataset, responses: Sequence[str]) -> tuple[fl
     missing = intervals.isnull().all(["index", "parameter"]).values
     verdicts = requested["sensitivity_verdict"]
     lines = str(verdicts.attrs["flag_descriptions"]).splitlines()
-    told = dict(zip(np.atleast_1d(verdicts.attrs["flag_values"]), lines, strict=True))
+    descriptions = dict(zip(np.atleast_1d(verdicts.attrs["flag_values"]), lines, strict=True))
     without = zip(np.array(responses)[missing], verdicts.values[missing], strict=True)
-    left_out = "".join(f"{name} has no indices ({told[verdict]}); " for name, verdict in without)
+    left_out = "".join(
+        f"{name} has no indices ({descriptions[verdict]}); " for name, verdict in without
+    )
     if missing.all():
         return np.nan, f"{left_out}no response has indices that more runs could narrow"
-    given = intervals.isel(response=~missing).fillna(np.inf)
-    widest = given.isel(given.argmax(["index", "response", "parameter"]))
+    widths = intervals.isel(response=~missing).fillna(np.inf)
+    widest = widths.isel(widths.argmax(["index", "response", "parameter"]))
     index = widest["index"].item().removesuffix("_interval").replace("_", "-")
     of = f"{widest['response'].item()} to {widest['parameter'].item()}, ± {widest.item():.3g}"
     return widest.item(), f"{left_out}the widest interval is that of the {index} index of {of}"
@@ -116,18 +118,18 @@ def refine_cases(runs: xr.Dataset, solve: Step, count: int | None = None) -> xr.
     return solved.assign_attrs(varied=names)
 
 
-def base_samples(whole: int) -> int:
+def base_samples(total: int) -> int:
     """Return how many base samples are solved again: half-widths fall with their square root."""
-    return min(whole, max(FEWEST, min(MOST, whole // SHARE)))
+    return min(total, max(FEWEST, min(MOST, total // SHARE)))
 
 
 def _first(runs: xr.Dataset, count: int | None) -> xr.Dataset:
     """Return the runs of the first base samples: at A, at A with one column of B each, and at B."""
-    whole = int(runs.attrs["base_samples"])
-    step, second = runs.sizes["run"] // whole, int(runs.attrs["second_order"])
+    total = int(runs.attrs["base_samples"])
+    step, second = runs.sizes["run"] // total, int(runs.attrs["second_order"])
     factors = (step - 2) // (2 if second else 1)
-    wanted = [*range(factors + 1), step - 1]  # before the last: B with columns of A
-    count = min(whole, count or base_samples(whole))
-    places = np.add.outer(step * np.arange(count), wanted).ravel()
+    offsets = [*range(factors + 1), step - 1]  # before the last: B with columns of A
+    count = min(total, count or base_samples(total))
+    places = np.add.outer(step * np.arange(count), offsets).ravel()
     attrs: dict[str, Any] = {"base_samples": count, "second_order": 0}
     return runs.isel(run=places).assign_attrs(attrs)

@@ -42,23 +42,23 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
         ranges = {} if study.python else FUNCTIONS[study.function].ranges
         fixed = {name: 0.5 * (low + high) for name, (low, high) in ranges.items()}
         fixed |= {name: float(value) for name, value in sampling.fixed.items()}
-        own: dict[str, Any] = {"solver": "function", "function": study.function}
-        own |= {"histories": 0, "profiles": 0, "history_samples": 0}
+        settings: dict[str, Any] = {"solver": "function", "function": study.function}
+        settings |= {"histories": 0, "profiles": 0, "history_samples": 0}
     else:
         if study.auto is not None:
             reason = "is auto: find it before the runs are drawn (impactlab design)"
             raise StudyError(Problem(str(study.path), "discretisation", reason))
         base = with_values(study.impact, study.discretisation, sampling.fixed)
         fixed = flatten(*base) | {"duration": study.duration}
-        own = {
+        settings = {
             "solver": next((model.solver for model in further_models(study)), "impact"),
             "histories": int(study.store.histories),
             "profiles": int(study.store.profiles),
             "history_samples": study.store.samples,
         }
-        own |= {"measurements": list(study.measurements)} if study.measurements else {}
+        settings |= {"measurements": list(study.measurements)} if study.measurements else {}
     if study.python:
-        own |= {"solver": resolve_name("impactlab.study.solvers.own:solver_name")(study)}
+        settings |= {"solver": resolve_name("impactlab.study.solvers.own:solver_name")(study)}
     varied: dict[str, Any]
     if isinstance(sampling, Grid):
         varied = {name: (name, np.array(values)) for name, values in sampling.parameters.items()}
@@ -67,12 +67,12 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
         for name, values in sampling.columns().items():
             varied[name] = "run", values, sampling.varied[name].arguments()
     scalars = {name: ((), value) for name, value in fixed.items()}
-    found = xr.Dataset(coords=scalars | varied, attrs=study.attributes() | own)
+    runs = xr.Dataset(coords=scalars | varied, attrs=study.attributes() | settings)
     if isinstance(study, Study):
-        return described(found)
+        return described(runs)
     for name, attrs in study.labels.items():
-        found[name].attrs = {**attrs, **found[name].attrs}
-    return found
+        runs[name].attrs = {**attrs, **runs[name].attrs}
+    return runs
 
 
 def doubled(small: xr.Dataset) -> xr.Dataset:
@@ -121,6 +121,6 @@ def study_of_design(design: xr.Dataset, file: Path) -> Study | FunctionStudy:
     study = study_of_text(str(design.attrs["study"]), str(design.attrs["study_text"]))
     if isinstance(study, FunctionStudy) or study.auto is None:
         return replace(study, path=file)
-    found = {name: design[name].item() for name in ("nodes", "points", "courant")}
-    grid = replace(study.discretisation, **found)
+    values = {name: design[name].item() for name in ("nodes", "points", "courant")}
+    grid = replace(study.discretisation, **values)
     return replace(study, path=file, discretisation=grid, auto=None)

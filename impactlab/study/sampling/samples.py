@@ -69,8 +69,8 @@ def saltelli(groups: Sequence[str], base_samples: int, second_order: bool, seed:
         points[place::count] = sequence.random(base_samples // count)[:, order]
     names = list(dict.fromkeys(groups))
     swapped = np.array([[group == name for group in groups] for name in names])
-    whole = np.ones((1, len(groups)), bool)
-    from_b = np.concatenate([~whole, swapped, *[~swapped] * second_order, whole])
+    every_group = np.ones((1, len(groups)), bool)
+    from_b = np.concatenate([~every_group, swapped, *[~swapped] * second_order, every_group])
     a, b = points[:, None, : len(groups)], points[:, None, len(groups) :]
     return np.where(from_b, b, a).reshape(-1, len(groups))
 
@@ -117,8 +117,8 @@ class Sobol(Grouped):
         if not (until := self.until):
             return settings
         limits = {"until_interval": until.interval, "until_runs": until.runs}
-        some = {"until_responses": list(until.responses)} if until.responses else {}
-        return settings | limits | some
+        responses = {"until_responses": list(until.responses)} if until.responses else {}
+        return settings | limits | responses
 
     def draws(self) -> Floats:
         """Draw base samples one after the other, see `saltelli`."""
@@ -148,7 +148,7 @@ class Morris(Grouped):
 
     @model_validator(mode="after")
     def _check_ends(self) -> Self:
-        if endless := [name for name, given in self.varied.items() if not given.bounds()]:
+        if endless := [name for name, entry in self.varied.items() if not entry.bounds()]:
             reason = (
                 "has no ends, where method morris has its outer levels: "
                 "use truncated_normal, or another with low and high"
@@ -274,8 +274,8 @@ class Latin(Sample):
     @model_validator(mode="after")
     def _check_rarest(self) -> Self:
         for name in self.words:
-            given = self.varied[name].arguments()
-            weight, word = min(zip(given["weights"], given["values"], strict=True))
+            choice = self.varied[name].arguments()
+            weight, word = min(zip(choice["weights"], choice["values"], strict=True))
             if self.samples * weight < _FEWEST_OF_WORD:
                 reason = (
                     f"gives {word!r} about {self.samples * weight:.0f} of {self.samples:,} runs, "
@@ -288,7 +288,7 @@ class Latin(Sample):
     @model_validator(mode="after")
     def _check_correlations(self) -> Self:
         seen: set[frozenset[str]] = set()
-        for at, (*pair, _) in enumerate(self.correlations):
+        for index, (*pair, _) in enumerate(self.correlations):
             for end, name in enumerate(pair):
                 if name in self.fixed:
                     reason = "is fixed, so nothing correlates with it: take the entry out"
@@ -300,13 +300,13 @@ class Latin(Sample):
                     reason = "is named twice: name two different parameters"
                 else:
                     continue
-                raise at_key(f"correlations.{at}.{end}", reason)
+                raise at_key(f"correlations.{index}.{end}", reason)
             if frozenset(pair) in seen:
-                raise at_key(f"correlations.{at}", "is given before: state each pair once")
+                raise at_key(f"correlations.{index}", "is given before: state each pair once")
             seen.add(frozenset(pair))
         if wrong := contradicting(list(self.varied), self.correlations):
-            inside = (each for each in self.correlations if {*each[:2]} <= {*wrong})
-            listed = ", ".join(f"{one} with {other} {rank:g}" for one, other, rank in inside)
+            inside = (entry for entry in self.correlations if {*entry[:2]} <= {*wrong})
+            listed = ", ".join(f"{first} with {other} {rank:g}" for first, other, rank in inside)
             reason = (
                 f"contradict each other ({listed}; pairs that are not listed have 0): the matrix "
                 f"of {', '.join(wrong)} is not positive definite: bring them closer to 0, or state "
@@ -320,7 +320,7 @@ class Latin(Sample):
         """The attributes of a design that describe its draws."""
         if not (pairs := self.correlations):
             return super().settings
-        names = {"correlated": [f"{one} {other}" for one, other, _ in pairs]}
+        names = {"correlated": [f"{first} {other}" for first, other, _ in pairs]}
         return super().settings | names | {"rank_correlations": [rank for *_, rank in pairs]}
 
     @property

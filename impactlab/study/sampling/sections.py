@@ -63,18 +63,20 @@ class Sampling(Section):
     @property
     def varied(self) -> Mapping[str, Any]:
         """Entries of the parameters that differ between runs: no sampler sees the others."""
-        return {name: each for name, each in self.parameters.items() if not isinstance(each, Fixed)}
+        return {
+            name: entry for name, entry in self.parameters.items() if not isinstance(entry, Fixed)
+        }
 
     @property
     def fixed(self) -> dict[str, Value]:
         """Values of the parameters that are listed with a single value."""
         entries = self.parameters.items()
-        return {name: each.value for name, each in entries if isinstance(each, Fixed)}
+        return {name: entry.value for name, entry in entries if isinstance(entry, Fixed)}
 
     @property
     def words(self) -> list[str]:
         """Names of the parameters that are drawn among words."""
-        return [name for name, each in self.parameters.items() if isinstance(each, Choice)]
+        return [name for name, entry in self.parameters.items() if isinstance(entry, Choice)]
 
     @property
     def no_surrogate(self) -> str:
@@ -121,19 +123,19 @@ class Sample(Sampling):
         parameter: Parameter, data: Any, info: ValidationInfo
     ) -> Distribution | Choice | Fixed:
         """Read a distribution within the model's limits, a choice of words, or a fixed value."""
-        given = data.get("distribution") if isinstance(data, dict) else None
-        if parameter.choices and given not in (CHOICE, "fixed"):
-            some = ", ".join(parameter.choices[:2])
+        kind = data.get("distribution") if isinstance(data, dict) else None
+        if parameter.choices and kind not in (CHOICE, "fixed"):
+            example = ", ".join(parameter.choices[:2])
             raise ValueError(
-                f"takes words: write {{distribution: choice, values: [{some}]}}, or "
+                f"takes words: write {{distribution: choice, values: [{example}]}}, or "
                 "{distribution: fixed, value: ...}"
             )
-        if parameter.is_integer and given != "fixed":
+        if parameter.is_integer and kind != "fixed":
             raise ValueError(
                 "is a whole number and cannot be sampled: vary it in a study with method: grid, "
                 "or write {distribution: fixed, value: ...}"
             )
-        if given == CHOICE and not (parameter.choices or parameter.any_word):
+        if kind == CHOICE and not (parameter.choices or parameter.any_word):
             raise at_key(
                 "distribution", f"is for words, and this is a number: use {', '.join(ARGUMENTS)}"
             )
@@ -159,8 +161,8 @@ class Sample(Sampling):
     def bounds(self) -> dict[str, tuple[Value, ...]]:
         """Return low and high of the bounded distributions, all words, and the fixed values."""
         ends = {
-            name: each.values if isinstance(each, Choice) else tuple(each.bounds().values())
-            for name, each in self.varied.items()
+            name: entry.values if isinstance(entry, Choice) else tuple(entry.bounds().values())
+            for name, entry in self.varied.items()
         } | {name: (value,) for name, value in self.fixed.items()}
         return {name: values for name, values in ends.items() if values}
 
@@ -177,7 +179,7 @@ class Sample(Sampling):
         """Draw one value per run of each varied parameter, in SI units, or one word."""
         unit = np.clip(self.draws(), _EDGE, 1 - _EDGE).T
         columns = zip(self.varied.items(), unit, strict=True)
-        return {name: given.quantile(draws) for (name, given), draws in columns}
+        return {name: entry.quantile(draws) for (name, entry), draws in columns}
 
 
 def _check_names(data: Any) -> Any:
@@ -228,7 +230,7 @@ class Grouped(Sample):
         for group, members in self.groups.items():
             if group in self.parameters:
                 raise at_key(f"groups.{group}", "is the name of a parameter: choose another name")
-            for at, member in enumerate(members):
+            for index, member in enumerate(members):
                 if member in self.fixed:
                     reason = "is fixed, so it belongs to no group: take it out"
                 elif member not in self.varied:
@@ -238,5 +240,5 @@ class Grouped(Sample):
                 else:
                     seen.add(member)
                     continue
-                raise at_key(f"groups.{group}.{at}", reason)
+                raise at_key(f"groups.{group}.{index}", reason)
         return self

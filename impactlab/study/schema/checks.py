@@ -38,9 +38,9 @@ def values_of(sampling: Grid | Sample, name: str, base: Value) -> tuple[Value, .
     """Return all values of a parameter of which a sample draws no numbers."""
     if isinstance(sampling, Grid):
         return sampling.parameters.get(name, (base,))
-    if isinstance(given := sampling.parameters.get(name), Choice):
-        words: tuple[Value, ...] = given.values
-        return words
+    if isinstance(entry := sampling.parameters.get(name), Choice):
+        choices: tuple[Value, ...] = entry.values
+        return choices
     return (sampling.fixed.get(name, base),)
 
 
@@ -49,15 +49,15 @@ def extremes(base: Base, sampling: Sampling) -> Extremes:
 
     A tail ends at its last thousandth; one that reaches below zero is left to the check of draws.
     """
-    found: dict[str, Any] = numbers(*base)
+    ends: dict[str, Any] = numbers(*base)
     for name, values in sampling.bounds().items():
         if not isinstance(values[0], str):
-            found[name] = min(values), max(values)
-    for name, given in sampling.varied.items():
-        if isinstance(given, Distribution) and not given.bounds():
-            low, high = given.quantile(_TAILS).tolist()
-            found[name] = (low, high) if low > 0 else found.get(name, (high, high))
-    return found
+            ends[name] = min(values), max(values)
+    for name, entry in sampling.varied.items():
+        if isinstance(entry, Distribution) and not entry.bounds():
+            low, high = entry.quantile(_TAILS).tolist()
+            ends[name] = (low, high) if low > 0 else ends.get(name, (high, high))
+    return ends
 
 
 def key_of(name: str, sampling: Sampling) -> str:
@@ -117,8 +117,8 @@ def limit_reasons(file: StudyFile | FunctionStudy) -> Reasons:
             yield f"limits.{name}", unknown("response", name, file.responses)
     method = file.sampling.method
     if file.limits and (reason := NO_DISTRIBUTION.get(method)):
-        others = "sobol, delta, pawn or regression"
-        yield "limits", f"give no probabilities with method {method}: {reason} (use {others})"
+        methods = "sobol, delta, pawn or regression"
+        yield "limits", f"give no probabilities with method {method}: {reason} (use {methods})"
     elif file.limits and "distribution" not in file.analyses:
         yield "limits", "need the analysis distribution: list it in analyses"
 
@@ -142,9 +142,9 @@ def _indices_to_grow_by(file: StudyFile) -> Reasons:
         return
     if "sensitivity" not in file.analyses:
         yield "sampling.until", "needs the analysis sensitivity: list it in analyses"
-    for at, name in enumerate(until.responses or ()):
+    for index, name in enumerate(until.responses or ()):
         if name not in file.responses:
-            yield f"sampling.until.responses.{at}", unknown("response", name, file.responses)
+            yield f"sampling.until.responses.{index}", unknown("response", name, file.responses)
 
 
 def _impacts(file: StudyFile) -> Reasons:
@@ -155,16 +155,16 @@ def _impacts(file: StudyFile) -> Reasons:
         name = refused.name if refused.name in varied else next(iter(refused.values))
         values = ", ".join(f"{key} = {value!r}" for key, value in refused.values.items())
         yield f"sampling.parameters.{name}", f"{values}: {refused.name} {refused.reason}"
-    for each in implausibilities(extremes((file.impact, grid), sampling)):
-        if each.impossible:
-            yield key_of(each.name, sampling), each.reason
+    for problem in implausibilities(extremes((file.impact, grid), sampling)):
+        if problem.impossible:
+            yield key_of(problem.name, sampling), problem.reason
     models = values_of(sampling, "beam_model", file.impact.beam_model)
-    others = [name for name in BEAM_MODELS if name in models and name not in BENDING_MODELS]
+    no_bending = [name for name in BEAM_MODELS if name in models and name not in BENDING_MODELS]
     schemes = {*values_of(sampling, "scheme", grid.scheme)} - {"leapfrog", "auto"}
-    if others and schemes:
+    if no_bending and schemes:
         reason = (
-            f"{min(map(str, schemes))} is for {' and '.join(BENDING_MODELS)}, and {others[0]} has "
-            "leapfrog alone: set scheme: leapfrog, or take out the beam model"
+            f"{min(map(str, schemes))} is for {' and '.join(BENDING_MODELS)}, and {no_bending[0]} "
+            "has leapfrog alone: set scheme: leapfrog, or take out the beam model"
         )
         yield key_of("scheme", sampling), reason
     lumped = [name for name in LUMPED_MODELS if name in models]
@@ -172,8 +172,8 @@ def _impacts(file: StudyFile) -> Reasons:
         reason = f"contact_patch is not for {lumped[0]}, which moves as one mass: set load: point"
         yield key_of("load", sampling), f"{reason}, or take out the beam model"
     for name, plain in TIMOSHENKO_OPTIONS.items():
-        given = values_of(sampling, name, getattr(file.impact, name))
-        ours = sorted(set(map(str, given)) - {plain})
+        options = values_of(sampling, name, getattr(file.impact, name))
+        ours = sorted(set(map(str, options)) - {plain})
         if ours and set(models) - {"timoshenko", *wings.models()}:
             yield key_of(name, sampling), f"{ours[0]} {TIMOSHENKO_ALONE}"
 

@@ -103,15 +103,15 @@ def describe(path: Path) -> dict[str, Any]:
     }
     listed = [name for name, has in traits.items() if has]
     listed += [model.trait for model in further_models(study)] if isinstance(study, Study) else []
-    found = {"name": study.name, "title": study.title, "size": study.size, "traits": listed}
+    summary = {"name": study.name, "title": study.title, "size": study.size, "traits": listed}
     measured = list(getattr(study, "measurements", ()))
-    return found | ({"measurements": measured} if measured else {})
+    return summary | ({"measurements": measured} if measured else {})
 
 
 def _kind(source: Source) -> str:
     """Return the key that the file has, perhaps misspelt, and that tells its kind; else ""."""
-    given = [str(key) for key in source.data]
-    return next(key for key in _READERS if not key or get_close_matches(key, given, 1, 0.75))
+    keys = [str(key) for key in source.data]
+    return next(key for key in _READERS if not key or get_close_matches(key, keys, 1, 0.75))
 
 
 def _wrong_kind(file: Path, reason: str, command: str) -> StudyError:
@@ -130,7 +130,7 @@ _STAND_INS: dict[str, Any] = {
 def _study(source: Source) -> Study:
     path, data = str(source.path), dict(source.data)
     python, units = _python_responses(data.pop("python_responses", {}), path)
-    units = {name: each.units for name, each in RESPONSES.items()} | units
+    units = {name: response.units for name, response in RESPONSES.items()} | units
     problems: list[Problem] = []
     try:
         file = validated(StudyFile, data, path, responses=units)
@@ -151,20 +151,20 @@ def _study(source: Source) -> Study:
     if python and (further := further_models(file)):
         reason = f"are given beam runs, which those with beam_model: {further[0].name} are not"
         raise StudyError(Problem(path, "python_responses", reason))
-    own: dict[str, Any] = dict(file) | {"discretisation": grid, "auto": auto, "python": python}
-    own["analysis"] = file.analysis or Analysis()
-    return Study(name=source.name, path=source.path, text=source.text, **own)
+    fields: dict[str, Any] = dict(file) | {"discretisation": grid, "auto": auto, "python": python}
+    fields["analysis"] = file.analysis or Analysis()
+    return Study(name=source.name, path=source.path, text=source.text, **fields)
 
 
-def _python_responses(given: Any, path: str) -> tuple[dict[str, str], dict[str, str]]:
+def _python_responses(responses: Any, path: str) -> tuple[dict[str, str], dict[str, str]]:
     """Return keys and units of the responses that are Python functions, known in this process."""
-    if given == {}:
+    if responses == {}:
         return {}, {}
     from impactlab.study.solvers.own import KNOWN
 
-    if not isinstance(given, dict) or not {*map(str, given.values())} <= KNOWN.keys():
+    if not isinstance(responses, dict) or not {*map(str, responses.values())} <= KNOWN.keys():
         raise StudyError(Problem(path, "python_responses", _NOT_KNOWN))
-    keys = {str(name): str(key) for name, key in given.items()}
+    keys = {str(name): str(key) for name, key in responses.items()}
     return keys, {name: KNOWN[key].unit(name) for name, key in keys.items()}
 
 
@@ -192,13 +192,13 @@ def _of_function(
     responses: tuple[str, ...],
 ) -> FunctionStudy:
     """Return the study. Raises StudyError where its limits have no meaning."""
-    own: dict[str, Any] = dict(file) | {"responses": responses}
-    own["labels"] = {
-        name: {"long_name": each.long_name, "units": each.units}
-        for name, each in parameters.items()
+    fields: dict[str, Any] = dict(file) | {"responses": responses}
+    fields["labels"] = {
+        name: {"long_name": parameter.long_name, "units": parameter.units}
+        for name, parameter in parameters.items()
     }
-    own["analyses"] = tuple(ANALYSES)
-    study = FunctionStudy(name=source.name, path=source.path, text=source.text, **own)
+    fields["analyses"] = tuple(ANALYSES)
+    study = FunctionStudy(name=source.name, path=source.path, text=source.text, **fields)
     if problems := [Problem(str(source.path), *reason) for reason in limit_reasons(study)]:
         raise StudyError(*problems)
     return study
@@ -215,10 +215,10 @@ def _own_function_study(source: Source, key: str) -> FunctionStudy:
     entries = (
         {str(name): entry for name, entry in listed.items()} if isinstance(listed, dict) else {}
     )
-    given = source.data.get("responses")
-    responses = [str(name) for name in given] if isinstance(given, list) else ["value"]
+    names = source.data.get("responses")
+    responses = [str(name) for name in names] if isinstance(names, list) else ["value"]
     places = [(name, f"sampling.parameters.{name}") for name in entries]
-    places += [(name, f"responses.{at}") for at, name in enumerate(responses)]
+    places += [(name, f"responses.{index}") for index, name in enumerate(responses)]
     for name, where in places:
         if reason := _name_problem(name) or (
             name in entries and name in responses and "names a parameter and a response"

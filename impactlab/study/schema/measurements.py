@@ -75,8 +75,8 @@ class _Entry(Section):
 
     @model_validator(mode="after")
     def _one_uncertainty(self) -> Self:
-        given = [self.standard_uncertainty, self.expanded_uncertainty]
-        if sum(each is not None for each in given) != 1:
+        stated = [self.standard_uncertainty, self.expanded_uncertainty]
+        if sum(value is not None for value in stated) != 1:
             raise ValueError(
                 "give one of standard_uncertainty (a standard deviation) and expanded_uncertainty "
                 "(with its coverage_factor)"
@@ -112,13 +112,15 @@ class _File(Heading):
     ]
 
 
-def read_measurements(given: Given, runs: xr.Dataset | None = None) -> tuple[Measurement, ...]:
+def read_measurements(
+    measurements: Given, runs: xr.Dataset | None = None
+) -> tuple[Measurement, ...]:
     """Read measurements: a file, or a mapping of the keys that a file has (docs/measurements.md).
 
     runs: whose responses and parameters may be measured beside those of impacts. Raises StudyError
     with every problem: file, key, value, what to do; ValueError for runs of no study.
     """
-    responses = {name: entry.units for name, entry in RESPONSES.items()}
+    responses = {name: response.units for name, response in RESPONSES.items()}
     parameters = dict(PARAMETERS)
     if runs is not None:
         if "responses" not in runs.attrs:
@@ -130,18 +132,18 @@ def read_measurements(given: Given, runs: xr.Dataset | None = None) -> tuple[Mea
         for name in listed(runs, "varied"):
             units = str(runs[name].attrs.get("units", "1"))
             parameters.setdefault(name, Parameter(name, units, name, ()))
-    if isinstance(given, Mapping):
-        file, data = "measurements", plain(given)
+    if isinstance(measurements, Mapping):
+        file, data = "measurements", plain(measurements)
     else:
-        file = str(given)
-        data = read_mapping(read_text(Path(given)), file)
+        file = str(measurements)
+        data = read_mapping(read_text(Path(measurements)), file)
     read: Any = partial(validated, parameters=parameters, responses=responses)
-    found: _File = read(_File, data, file)
-    source = f"{found.title} ({found.source})"
+    content: _File = read(_File, data, file)
+    source = f"{content.title} ({content.source})"
     measured = []
-    for each in found.measurements:
-        value = each.quantity, each.value, each.standard, responses[each.quantity]
-        conditions = {**found.conditions, **each.conditions}
-        shared = float(each.systematic_uncertainty)
-        measured.append(Measurement(*value, conditions, source, found.simulated, shared))
+    for entry in content.measurements:
+        value = entry.quantity, entry.value, entry.standard, responses[entry.quantity]
+        conditions = {**content.conditions, **entry.conditions}
+        shared = float(entry.systematic_uncertainty)
+        measured.append(Measurement(*value, conditions, source, content.simulated, shared))
     return tuple(measured)

@@ -64,10 +64,10 @@ class Distribution(Section):
     @model_validator(mode="after")
     def _holds_something(self) -> Self:
         """Refuse an interval so far out in the tail that the quantiles lose their digits."""
-        given = self.arguments()
-        if given["distribution"] == "truncated_normal":
-            mean, deviation = given["mean"], given["standard_deviation"]
-            if (given["low"] - mean) / deviation > 8 or (given["high"] - mean) / deviation < -8:
+        fields = self.arguments()
+        if fields["distribution"] == "truncated_normal":
+            mean, deviation = fields["mean"], fields["standard_deviation"]
+            if (fields["low"] - mean) / deviation > 8 or (fields["high"] - mean) / deviation < -8:
                 raise ValueError(
                     "low to high lies more than 8 standard deviations from the mean: "
                     "move them closer"
@@ -102,7 +102,7 @@ class Choice(Section):
     @field_validator("values")
     @classmethod
     def _distinct(cls, values: list[str]) -> tuple[str, ...]:
-        if twice := [word for at, word in enumerate(values) if word in values[:at]]:
+        if twice := [word for index, word in enumerate(values) if word in values[:index]]:
             raise ValueError(f"names {twice[0]} more than once: name each word once")
         if len(values) < 2:
             raise ValueError(
@@ -113,12 +113,12 @@ class Choice(Section):
     @field_validator("weights")
     @classmethod
     def _of_each(cls, weights: list[float], info: ValidationInfo) -> list[float]:
-        words = info.data.get("values", weights)
-        if len(weights) != len(words):
-            raise ValueError(f"holds {len(weights)} for {len(words)} words: give each word one")
+        choices = info.data.get("values", weights)
+        if len(weights) != len(choices):
+            raise ValueError(f"holds {len(weights)} for {len(choices)} words: give each word one")
         relative = np.array(weights) / max(weights)  # of which the sum is finite
-        found: list[float] = (relative / relative.sum()).tolist()
-        return found
+        probabilities: list[float] = (relative / relative.sum()).tolist()
+        return probabilities
 
     def quantile(self, probability: Floats) -> np.ndarray[Any, np.dtype[np.str_]]:
         """Return the words at these probabilities in (0, 1), in their order, of the same shape."""
@@ -154,8 +154,8 @@ def distribution_section(name: str, parameter: Parameter) -> type[Distribution |
     if name == "fixed":
         return create_model("Fixed", __base__=Fixed, value=(value, ...))
     number, above_zero = quantity(parameter.units), Field(gt=0)
-    words = "must be above 1 (with 1.1 most draws lie within 10 % of the median)"
-    above_one = requires(lambda factor: factor > 1, words)
+    message = "must be above 1 (with 1.1 most draws lie within 10 % of the median)"
+    above_one = requires(lambda factor: factor > 1, message)
     types: dict[str, Any] = {
         "low": Annotated[value, above_zero] if name == "log_uniform" else value,
         "high": value,

@@ -72,15 +72,15 @@ def names(kind: str, choices: Collection[str]) -> PlainValidator:
 
     def read(data: Any, info: ValidationInfo) -> tuple[str, ...]:
         every = dict.fromkeys([*choices, *(info.context or {}).get(f"{kind}s", ())])
-        words: TypeAdapter[list[str]] = TypeAdapter(list[Annotated[str, one_of(kind, every)]])
+        adapter: TypeAdapter[list[str]] = TypeAdapter(list[Annotated[str, one_of(kind, every)]])
         if data == "all":
             return tuple(choices)
         if not isinstance(data, list) or not data:
             raise ValueError(f"expected `all`, or a list of names: choose from {', '.join(every)}")
-        found = words.validate_python(data)
-        if twice := [name for at, name in enumerate(found) if name in found[:at]]:
+        entries = adapter.validate_python(data)
+        if twice := [name for index, name in enumerate(entries) if name in entries[:index]]:
             raise ValueError(f"names {twice[0]} more than once: name each {kind} once")
-        return tuple(found)
+        return tuple(entries)
 
     return PlainValidator(read)
 
@@ -103,16 +103,16 @@ def by_name(
     """Read a mapping of some of these keys, each with its type; return it in the file's order."""
     fields: Any = {name: (kind, None) for name, kind in types.items()}
     section = create_model(title, __base__=Section, **fields)
-    found = section.model_validate(data, context=info.context)
-    return {name: getattr(found, name) for name in data}
+    content = section.model_validate(data, context=info.context)
+    return {name: getattr(content, name) for name in data}
 
 
-def requires(test: Callable[[Any], bool], words: str) -> AfterValidator:
-    """Return a check that a value passes a test; the words say what it must be."""
+def requires(test: Callable[[Any], bool], message: str) -> AfterValidator:
+    """Return a check that a value passes a test; the message says what it must be."""
 
     def check(value: Any) -> Any:
         if not test(value):
-            raise ValueError(words)
+            raise ValueError(message)
         return value
 
     return AfterValidator(check)
@@ -202,13 +202,13 @@ def _problem(line: Any, data: Any, file: str, keys: Mapping[int, Sequence[str]])
     path = [*line["loc"], *context["key"].split(".")] if kind == "at_key" else [*line["loc"]]
     parent, present, value = _value_at(data, path)
     if kind == "extra_forbidden":
-        here, key = keys[id(parent)], str(path[-1])
+        allowed, key = keys[id(parent)], str(path[-1])
         elsewhere = (
             say
             for like, say in _NOT_HERE.items()
-            if re.fullmatch(like, key) and not any(re.fullmatch(like, own) for own in here)
+            if re.fullmatch(like, key) and not any(re.fullmatch(like, name) for name in allowed)
         )
-        reason = next(elsewhere, None) or unknown("key", path[-1], here)
+        reason = next(elsewhere, None) or unknown("key", path[-1], allowed)
     elif kind == "value_error":
         reason = str(context["error"])
     else:

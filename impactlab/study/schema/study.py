@@ -63,7 +63,7 @@ _DEFAULTS = {
 """Defaults that the model's classes give the fields, or MISSING."""
 
 
-def _section(*path: str, **others: Any) -> type[Section]:
+def _section(*path: str, **fields: Any) -> type[Section]:
     """Return the section of a part of the model, with a key per field, from PARAMETERS."""
     # a value may be null where that is the default
     nothing = WrapValidator(lambda value, read: None if value is None else read(value))
@@ -76,7 +76,7 @@ def _section(*path: str, **others: Any) -> type[Section]:
             optional = not deeper and _DEFAULTS[name] is None
             kind = _section(*path, key) if deeper else value_type(entry)
             keys[key] = (Annotated[kind, nothing] if optional else kind, None)
-    return create_model("_".join(path), __base__=Section, **(keys | others))
+    return create_model("_".join(path), __base__=Section, **(keys | fields))
 
 
 _IMPACT = _section("impact", base=(Annotated[str, one_of("base", BASES)], None))
@@ -87,8 +87,8 @@ _DISCRETISATION = _section("discretisation", auto=(Auto | None, None), scheme=(_
 def read_impact(data: Any, info: ValidationInfo) -> Impact:
     """Read an impact: a base with changes, or every value. Raises ValueError naming the keys."""
     section: Any = _IMPACT.model_validate(data, context=info.context)
-    own = {} if section.base else _DEFAULTS
-    values = {name: own[name] for name in own if PARAMETERS[name].path[0] == "impact"}
+    defaults = {} if section.base else _DEFAULTS
+    values = {name: defaults[name] for name in defaults if PARAMETERS[name].path[0] == "impact"}
     values |= _given_values(section, "impact")
     if missing := [_key(name) for name, value in values.items() if value is MISSING]:
         raise ValueError(f"without a `base` these are required too: {', '.join(missing)}")
@@ -99,28 +99,28 @@ def read_discretisation(data: Any, info: ValidationInfo) -> tuple[Discretisation
     """Read a discretisation, and how to find it, if at all. Raises ValueError naming the keys."""
     data = {"auto": {}} if data == "auto" else data
     section: Any = _DISCRETISATION.model_validate(data, context=info.context)
-    given = _given_values(section, "discretisation")
-    for name in given.keys() & {"nodes", "points", "courant"} if section.auto else ():
+    values = _given_values(section, "discretisation")
+    for name in values.keys() & {"nodes", "points", "courant"} if section.auto else ():
         raise at_key(name, "cannot be given beside auto, which finds it: take out one of the two")
-    return _changed((paper_impact(), Discretisation()), given)[1], section.auto
+    return _changed((paper_impact(), Discretisation()), values)[1], section.auto
 
 
 def _given_values(section: Section, root: str) -> dict[str, Any]:
     """Return the values in a section, by the name of the parameter."""
     tree = {root: section.model_dump(exclude_unset=True)}
-    given = {}
+    values = {}
     for name, entry in PARAMETERS.items():
         node: Any = tree
         for step in entry.path:
             node = node.get(step, MISSING) if isinstance(node, dict) else MISSING
         if node is not MISSING:
-            given[name] = node
-    return given
+            values[name] = node
+    return values
 
 
 def _changed(base: Base, values: Mapping[str, Any]) -> Base:
-    if found := refusal(base, values):
-        raise at_key(_key(found.name), found.reason)
+    if refused := refusal(base, values):
+        raise at_key(_key(refused.name), refused.reason)
     return with_values(*base, values)
 
 
@@ -156,7 +156,7 @@ class Analysis(Section):
 def read_limits(data: Any, info: ValidationInfo) -> dict[str, float]:
     """Read limits by response, in SI units; the context has those that the study may have."""
     units: Mapping[str, str] = info.context["responses"]  # type: ignore[index]
-    return by_name("Limits", {name: quantity(each) for name, each in units.items()}, data, info)
+    return by_name("Limits", {name: quantity(unit) for name, unit in units.items()}, data, info)
 
 
 Limits = Annotated[Mapping[str, float], PlainValidator(read_limits)]
@@ -199,8 +199,8 @@ class Declared:
 
     def attributes(self) -> dict[str, Any]:
         """Return the attributes by which datasets keep it."""
-        given = {"study": self.name, "title": self.title, "description": self.description}
-        return given | {"study_text": self.text, "study_sha256": self.sha256}
+        attrs = {"study": self.name, "title": self.title, "description": self.description}
+        return attrs | {"study_text": self.text, "study_sha256": self.sha256}
 
 
 @dataclass(frozen=True)
@@ -220,14 +220,14 @@ class StudyBase(Declared):
     def attributes(self) -> dict[str, Any]:
         """Return the attributes of designs that do not depend on the solver."""
         sampling = self.sampling
-        found = super().attributes() | {"method": sampling.method, "varied": list(sampling.varied)}
-        found |= {"responses": list(self.responses), "analyses": list(self.analyses)}
+        attrs = super().attributes() | {"method": sampling.method, "varied": list(sampling.varied)}
+        attrs |= {"responses": list(self.responses), "analyses": list(self.analyses)}
         if not isinstance(sampling, Grid):
             unused = {"resamples"} if isinstance(sampling, Sobol) else None
-            found |= self.analysis.model_dump(exclude=unused) | sampling.settings
+            attrs |= self.analysis.model_dump(exclude=unused) | sampling.settings
         if self.limits:
-            found |= {"limited": list(self.limits), "limits": list(self.limits.values())}
-        return found
+            attrs |= {"limited": list(self.limits), "limits": list(self.limits.values())}
+        return attrs
 
     @property
     def size(self) -> str:

@@ -36,10 +36,10 @@ class _Section:
             Keys and values of the section.
         """
         snake = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", type(self).__name__).lower()
-        given = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
-        last = {key: given.pop(key) for key in ("parameters",) if key in given}
-        given = {self._key: snake} | given | last
-        return {key: plain(each) for key, each in given.items() if each is not None}
+        entries = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+        last = {key: entries.pop(key) for key in ("parameters",) if key in entries}
+        entries = {self._key: snake} | entries | last
+        return {key: plain(value) for key, value in entries.items() if value is not None}
 
 
 class _Distribution(_Section):
@@ -226,13 +226,13 @@ class _Sample(_Sampling):
         dict
             Keys and values of the section.
         """
-        found = super().written()
+        section = super().written()
         if isinstance(self.parameters, Mapping):
-            found["parameters"] = {
-                name: each if isinstance(each, dict) else {"distribution": "fixed", "value": each}
-                for name, each in found["parameters"].items()
+            section["parameters"] = {
+                name: item if isinstance(item, dict) else {"distribution": "fixed", "value": item}
+                for name, item in section["parameters"].items()
             }
-        return found
+        return section
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -436,9 +436,9 @@ def plain(value: Any) -> Any:
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if isinstance(value, Mapping):
-        return {key: plain(each) for key, each in value.items()}
+        return {key: plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple | set):
-        return [plain(each) for each in value]
+        return [plain(item) for item in value]
     if not isinstance(text := as_text(value), str | int | float | list | None):
         raise ValueError(f"is of type {type(value).__name__}, which no study file can hold")
     return text
@@ -462,15 +462,15 @@ def text_of(sections: Values) -> str:
 
     Raises StudyError naming a section that no file can hold.
     """
-    given: dict[str, Any] = {}
-    for key, each in sections.items():
+    content: dict[str, Any] = {}
+    for key, section in sections.items():
         try:
-            given |= {} if each is None else {key: plain(each)}
+            content |= {} if section is None else {key: plain(section)}
         except ValueError as error:
             raise StudyError(Problem("Study", key, str(error))) from None
     yaml: Any = YAML(typ="safe", pure=True)
     text = io.StringIO()
     yaml.default_flow_style, yaml.sort_base_mapping_type_on_output = None, False
     yaml.width, yaml.allow_unicode = 96, True
-    yaml.dump(given, text)
+    yaml.dump(content, text)
     return text.getvalue()

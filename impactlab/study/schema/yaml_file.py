@@ -72,9 +72,9 @@ def read_text(path: Path) -> str:
             reason = f"is larger than {LARGEST // 1024} KiB: shorten it"
         else:
             near = (f"{path}.yaml", f"studies/{path.name}", f"studies/{path.name}.yaml")
-            meant = [f"; did you mean {each}?" for each in near if Path(each).is_file()]
+            hints = [f"; did you mean {name}?" for name in near if Path(name).is_file()]
             reason = (
-                "is not a file" if path.exists() else "".join(["there is no such file", *meant[:1]])
+                "is not a file" if path.exists() else "".join(["there is no such file", *hints[:1]])
             )
     except OSError as error:
         reason = f"cannot be read: {error.strerror}"
@@ -99,16 +99,16 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
         mark = error.problem_mark
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
         tab = "; put spaces in the place of tabs" if "'\\t'" in str(error.problem) else ""
-        words = f"{where}{error.problem}{tab}"
+        problem = f"{where}{error.problem}{tab}"
     except RecursionError:
-        words = "nests too deeply"
+        problem = "nests too deeply"
     except Exception as error:  # a hostile text can make the parser fail in any way
-        words = str(error) or type(error).__name__
+        problem = str(error) or type(error).__name__
     else:
         if isinstance(data, dict):
             return data
         raise StudyError(Problem(file, "", "holds no keys such as `title: ...`"))
-    raise StudyError(Problem(file, "", f"is not YAML: {(words.splitlines() or [''])[0]}"))
+    raise StudyError(Problem(file, "", f"is not YAML: {(problem.splitlines() or [''])[0]}"))
 
 
 MOST = 50_000
@@ -160,16 +160,16 @@ class Constructor(SafeConstructor):
             raise ConstructorError(None, None, reason, node.start_mark) from None
 
 
-def _measure(node: Node, path: Key, known: dict[int, tuple[int, int]]) -> tuple[int, int]:
-    """Return (nodes, levels) of an expanded node; known: of those visited before, by their id."""
-    if id(node) not in known:
+def _measure(node: Node, path: Key, extents: dict[int, tuple[int, int]]) -> tuple[int, int]:
+    """Return (nodes, levels) of an expanded node; extents: of those visited before, by their id."""
+    if id(node) not in extents:
         if len(path) > _DEEPEST:  # ends at a node that holds itself, too
             raise RefusedError(path, "nests too deeply")
-        below = [_measure(child, (*path, step), known) for step, child in _children(node, path)]
-        size = 1 + sum(each for each, _ in below)
-        height = 1 + max((each for _, each in below), default=0)
-        known[id(node)] = size, height
-    size, height = known[id(node)]
+        below = [_measure(child, (*path, step), extents) for step, child in _children(node, path)]
+        size = 1 + sum(nodes for nodes, _ in below)
+        height = 1 + max((levels for _, levels in below), default=0)
+        extents[id(node)] = size, height
+    size, height = extents[id(node)]
     if size > MOST:
         raise RefusedError(path, "holds too much: its aliases count as often as they are used")
     if len(path) + height > _DEEPEST + 1:
@@ -184,7 +184,7 @@ def _children(node: Node, path: Key) -> Iterator[tuple[str, Node]]:
     if kind not in _TAGS:
         raise RefusedError(path, f"has the tag {dotted([tag.replace(_CORE, '!!')])}: take it out")
     if isinstance(node, SequenceNode):
-        yield from ((str(at), child) for at, child in enumerate(node.value))
+        yield from ((str(index), child) for index, child in enumerate(node.value))
     elif isinstance(node, MappingNode):
         if not all(isinstance(key, ScalarNode) for key, _ in node.value):
             raise RefusedError(path, "a key must be a word, not a list or a mapping")
