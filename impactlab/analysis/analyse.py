@@ -53,9 +53,9 @@ def analyse(
         raise ValueError(
             "the runs are not those of a study: analyse what il.Study(...).run() gives"
         )
-    wanted = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
+    names = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
     plan: Any = runs.attrs.get("method"), runs.sizes, True
-    entries = [ANALYSES[name] for name in ANALYSES if name in wanted]
+    entries = [ANALYSES[name] for name in ANALYSES if name in names]
     listed = (resolve_name(entry.place) for entry in entries if entry.possible(*plan))
     parts = [module.analysis(runs) for module in listed if module.applies(runs)]
     requested = xr.Dataset(coords=labels(runs))

@@ -76,18 +76,25 @@ class Model:
         Raises ValueError, with every reason, where it cannot predict one of them.
         """
         reasons = list(_mismatches(surrogate, measurements))
-        known = surrogate.parameters
+        varied = surrogate.parameters
         stated = [
-            {name: float(one.conditions[name]) for name in known if name in one.conditions}
-            for one in measurements
+            {
+                name: float(measurement.conditions[name])
+                for name in varied
+                if name in measurement.conditions
+            }
+            for measurement in measurements
         ]
-        free = tuple(n for n in surrogate.parameters if not all(n in each for each in stated))
+        free = tuple(n for n in surrogate.parameters if not all(n in fixed for fixed in stated))
         for name in free:
-            if some := [
-                one.quantity for one, each in zip(measurements, stated, strict=True) if name in each
+            if quantities := [
+                measurement.quantity
+                for measurement, fixed in zip(measurements, stated, strict=True)
+                if name in fixed
             ]:
                 reasons.append(
-                    f"{name}: is stated for {some[0]} but not for all: state it for all, or none"
+                    f"{name}: is stated for {quantities[0]} but not for all: state it for all, or "
+                    "none"
                 )
         if not 0 < len(free) <= MOST:
             reasons.append(
@@ -96,12 +103,12 @@ class Model:
             )
         if reasons:
             raise ValueError("\n".join(dict.fromkeys(reasons)))
-        keys = [json.dumps(each) for each in stated]
+        keys = [json.dumps(fixed) for fixed in stated]
         _, firsts, place = np.unique(keys, return_index=True, return_inverse=True)
         places = []
-        for at, first in enumerate(firsts.tolist()):
+        for index, first in enumerate(firsts.tolist()):
             unit = {n: surrogate.probability(n, value) for n, value in stated[first].items()}
-            places.append((unit, np.flatnonzero(place == at)))
+            places.append((unit, np.flatnonzero(place == index)))
         sampled = surrogate.dataset.sel(parameter=list(free))
         ends = zip(free, sampled[["lowest", "highest"]].to_array().values.T.tolist(), strict=True)
         limits = np.array([[surrogate.probability(n, end) for end in pair] for n, pair in ends])
@@ -113,26 +120,28 @@ class Model:
             columns = dict(zip(free, prior, strict=True)) | {
                 name: np.full(256, value) for name, value in unit.items()
             }
-            widths = surrogate.errors(np.column_stack([columns[name] for name in known]))
-            for at in members.tolist():
-                row = surrogate.responses.index(measurements[at].quantity)
-                error[at] = np.sqrt(np.mean(widths[row] ** 2)) / COVERAGE
-        measured = np.array([one.value for one in measurements])
-        names = np.array([one.quantity for one in measurements])
+            widths = surrogate.errors(np.column_stack([columns[name] for name in varied]))
+            for member in members.tolist():
+                row = surrogate.responses.index(measurements[member].quantity)
+                error[member] = np.sqrt(np.mean(widths[row] ** 2)) / COVERAGE
+        measured = np.array([measurement.value for measurement in measurements])
+        names = np.array([measurement.quantity for measurement in measurements])
         alike = names[:, None] == names
-        systematic = np.array([one.systematic_uncertainty for one in measurements])
-        sources = np.array([one.source for one in measurements])
-        total = np.array([one.standard_uncertainty for one in measurements])
+        systematic = np.array([measurement.systematic_uncertainty for measurement in measurements])
+        sources = np.array([measurement.source for measurement in measurements])
+        total = np.array([measurement.standard_uncertainty for measurement in measurements])
         covariance = np.diag(total**2 - systematic**2)
         common = alike & (sources[:, None] == sources)
         covariance = covariance + np.outer(systematic, systematic) * common
         # neighbouring predictions have nearly the same error, however often they are measured
-        conditions = np.array([list(each.values()) for each, _ in places]).reshape(len(places), -1)
+        conditions = np.array([list(unit.values()) for unit, _ in places]).reshape(len(places), -1)
         distance = np.linalg.norm(conditions[:, None] - conditions, axis=-1)[np.ix_(place, place)]
         covariance = covariance + np.outer(error, error) * alike * np.exp(-distance / REACH)
         shared = np.array([numerical.get(name, 0.0) / 2.0 for name in names]) * measured
-        own = model_error * measured
-        covariance = covariance + (np.outer(shared, shared) + np.outer(own, own)) * alike
+        model_errors = model_error * measured
+        covariance = (
+            covariance + (np.outer(shared, shared) + np.outer(model_errors, model_errors)) * alike
+        )
         return cls(
             surrogate, free, tuple(places), limits, tuple(names), measured, error, covariance
         )
@@ -141,23 +150,28 @@ class Model:
         """Return the parameters at points of the prior's cube, in SI units, (points, free)."""
         low, high = self.limits.T
         unit = low + (high - low) * points
-        given = [self.surrogate.distribution(name) for name in self.free]
-        return np.array([quantile(each, u) for each, u in zip(given, unit.T, strict=True)]).T
+        distributions = [self.surrogate.distribution(name) for name in self.free]
+        return np.array(
+            [
+                quantile(distribution, u)
+                for distribution, u in zip(distributions, unit.T, strict=True)
+            ]
+        ).T
 
     def predicted(self, points: Floats) -> Floats:
         """Return the surrogate at each measurement, (points, measurements)."""
         low, high = self.limits.T
         inner = dict(zip(self.free, (low + (high - low) * points).T, strict=True))
-        found = np.empty((len(points), self.measured.size))
+        predictions = np.empty((len(points), self.measured.size))
         for stated, members in self.places:
             columns = [
                 inner[name] if name in inner else np.full(len(points), stated[name])
                 for name in self.surrogate.parameters
             ]
             answers = self.surrogate.at(np.column_stack(columns))
-            rows = [self.surrogate.responses.index(self.responses[at]) for at in members]
-            found[:, members] = answers[rows].T
-        return found
+            rows = [self.surrogate.responses.index(self.responses[member]) for member in members]
+            predictions[:, members] = answers[rows].T
+        return predictions
 
     def squared(self, predicted: Floats) -> Floats:
         """Return the squared distance of predictions from the data, in all errors, (points,)."""
@@ -173,32 +187,33 @@ class Model:
 def _mismatches(surrogate: Surrogate, measurements: Sequence[Measurement]) -> Iterator[str]:
     """Yield the reasons why a surrogate cannot predict the measurements."""
     held = surrogate.dataset.coords
-    for one in measurements:
-        for name, value in one.conditions.items():
+    for measurement in measurements:
+        for name, value in measurement.conditions.items():
             if name in surrogate.parameters:
                 try:
                     surrogate.probability(name, float(value))
                 except ValueError as error:
-                    yield f"{one.quantity}: {error}"
+                    yield f"{measurement.quantity}: {error}"
             elif name not in held or not same(held[name].item(), value):
-                own = (
+                remark = (
                     f"it is {held[name].item()!r} in the study"
                     if name in held
                     else "the study has none"
                 )
-                yield f"{one.quantity}: was measured at {name} = {value!r}, but {own}"
-        if one.quantity not in surrogate.responses:
-            yield f"{one.quantity}: is no response of the study ({', '.join(surrogate.responses)})"
+                yield f"{measurement.quantity}: was measured at {name} = {value!r}, but {remark}"
+        if measurement.quantity not in surrogate.responses:
+            responses = ", ".join(surrogate.responses)
+            yield f"{measurement.quantity}: is no response of the study ({responses})"
             continue
-        entry = surrogate.dataset.sel(response=one.quantity)
+        entry = surrogate.dataset.sel(response=measurement.quantity)
         verdict = list(SurrogateVerdict)[int(entry["verdict"])]
         if verdict is not SurrogateVerdict.USABLE:
-            yield f"{one.quantity}: its surrogate is not usable: {verdict.meaning}"
-        elif (rmse := float(entry["rmse"])) > one.standard_uncertainty:
+            yield f"{measurement.quantity}: its surrogate is not usable: {verdict.meaning}"
+        elif (rmse := float(entry["rmse"])) > measurement.standard_uncertainty:
             yield (
-                f"{one.quantity}: the surrogate's error ({rmse:.3g} {one.units}) exceeds the "
-                f"standard uncertainty of the data ({one.standard_uncertainty:.3g}): draw more "
-                "runs, or narrower ranges"
+                f"{measurement.quantity}: the surrogate's error ({rmse:.3g} {measurement.units}) "
+                "exceeds the standard uncertainty of the data "
+                f"({measurement.standard_uncertainty:.3g}): draw more runs, or narrower ranges"
             )
 
 
@@ -237,53 +252,59 @@ def calibrated(
     if reasons:
         raise ValueError("\n".join(reasons))
     with threadpool_limits(limits=1):  # the same bits on any number of processors
-        found = {
-            name: posterior(model.log_likelihood, len(model.free), _SEED + at)
-            for at, (name, model) in enumerate(models.items())
+        posteriors = {
+            name: posterior(model.log_likelihood, len(model.free), _SEED + position)
+            for position, (name, model) in enumerate(models.items())
         }
-        even = dict.fromkeys(found, 1.0 / len(found))
-        return _packed(models, found, measurements, before or even)
+        even = dict.fromkeys(posteriors, 1.0 / len(posteriors))
+        return _packed(models, posteriors, measurements, before or even)
 
 
 def _packed(
     models: Mapping[str, Model],
-    found: Mapping[str, Posterior],
+    posteriors: Mapping[str, Posterior],
     measurements: Sequence[Measurement],
     before: Mapping[str, float],
 ) -> xr.Dataset:
-    evidence = np.array([each.log_evidence for each in found.values()])
-    share = normalised(evidence + np.log([before[name] for name in found]))
-    doubts = [_doubt(models[name], each) for name, each in found.items()]
+    evidence = np.array([posterior.log_evidence for posterior in posteriors.values()])
+    share = normalised(evidence + np.log([before[name] for name in posteriors]))
+    doubts = [_doubt(models[name], posterior) for name, posterior in posteriors.items()]
     if reasons := [
         f"{name}: {doubt}" if name else doubt
-        for name, doubt, weight in zip(found, doubts, share, strict=True)
+        for name, doubt, weight in zip(posteriors, doubts, share, strict=True)
         if doubt and not weight < NEGLIGIBLE
     ]:
         raise ValueError("\n".join(reasons))
     first = next(iter(models.values()))
     free = first.free
-    weights = np.concatenate([w * p.weights for w, p in zip(share, found.values(), strict=True)])
+    weights = np.concatenate(
+        [w * p.weights for w, p in zip(share, posteriors.values(), strict=True)]
+    )
     of_each = [
-        (models[name].values(each.points), models[name].predicted(each.points))
-        for name, each in found.items()
+        (models[name].values(posterior.points), models[name].predicted(posterior.points))
+        for name, posterior in posteriors.items()
     ]
-    values, predicted = (np.concatenate(each) for each in zip(*of_each, strict=True))
+    values, predicted = (np.concatenate(parts) for parts in zip(*of_each, strict=True))
     squares = [model.squared(y) for model, (_, y) in zip(models.values(), of_each, strict=True)]
-    of_model = np.repeat(np.arange(len(found)), [each.weights.size for each in found.values()])
+    of_model = np.repeat(
+        np.arange(len(posteriors)), [posterior.weights.size for posterior in posteriors.values()]
+    )
     even = (np.arange(20_000) + 0.5) / 20_000
     prior = first.values(np.column_stack([even] * len(free)))
     mean, deviation = _moments(values, weights)
-    moments = [_moments(x, p.weights) for (x, _), p in zip(of_each, found.values(), strict=True)]
+    moments = [
+        _moments(x, p.weights) for (x, _), p in zip(of_each, posteriors.values(), strict=True)
+    ]
     prior_mean, prior_deviation = prior.mean(axis=0), prior.std(axis=0)
     low, high = np.quantile(values, (0.025, 0.975), axis=0, weights=weights, method="inverted_cdf")
-    inner = np.concatenate([each.points for each in found.values()])
+    inner = np.concatenate([posterior.points for posterior in posteriors.values()])
     of_modes = [modes(column, weights) for column in inner.T]
     ranges = np.full((len(free), max(map(len, of_modes)), 3), np.nan)
-    for at, intervals in enumerate(of_modes):
+    for parameter, intervals in enumerate(of_modes):
         for mode, (ends, mass) in enumerate(intervals):
             corners = np.full((2, len(free)), 0.5)
-            corners[:, at] = ends
-            ranges[at, mode] = [*first.values(corners)[:, at], mass]
+            corners[:, parameter] = ends
+            ranges[parameter, mode] = [*first.values(corners)[:, parameter], mass]
     offsets = (values - mean) / np.where(deviation > 0, deviation, 1.0)
     correlation = (offsets * weights[:, np.newaxis]).T @ offsets
     predicted_mean, predicted_deviation = _moments(predicted, weights)
@@ -294,8 +315,10 @@ def _packed(
     picked = rng.permutation(picked.clip(max=weights.size - 1))
     p_value = float(weights @ scipy.stats.chi2.sf(np.concatenate(squares), len(measurements)))
     units = [first.surrogate.units(name) for name in free]
-    uncertainty = COVERAGE * np.array([one.standard_uncertainty for one in measurements])
-    stated = [json.dumps(dict(one.conditions)) for one in measurements]
+    uncertainty = COVERAGE * np.array(
+        [measurement.standard_uncertainty for measurement in measurements]
+    )
+    stated = [json.dumps(dict(measurement.conditions)) for measurement in measurements]
     variables: dict[str, Any] = {
         "posterior_mean": ("parameter", mean),
         "posterior_deviation": ("parameter", deviation),
@@ -310,11 +333,14 @@ def _packed(
         "spread_ratio": ("parameter", deviation / prior_deviation),
         "parameter_units": ("parameter", units),
         "model_weight": ("model", share),
-        "model_weight_before": ("model", [before[name] for name in found]),
-        "model_mean": (("model", "parameter"), np.array([each for each, _ in moments])),
-        "model_deviation": (("model", "parameter"), np.array([each for _, each in moments])),
+        "model_weight_before": ("model", [before[name] for name in posteriors]),
+        "model_mean": (("model", "parameter"), np.array([means for means, _ in moments])),
+        "model_deviation": (
+            ("model", "parameter"),
+            np.array([deviations for _, deviations in moments]),
+        ),
         "log_evidence": ("model", evidence),
-        "effective_samples": ("model", [each.effective for each in found.values()]),
+        "effective_samples": ("model", [posterior.effective for posterior in posteriors.values()]),
         "model_doubt": ("model", doubts),
         "measured": ("measurement", first.measured),
         "measured_uncertainty": ("measurement", uncertainty),
@@ -322,16 +348,19 @@ def _packed(
         "predicted_deviation": ("measurement", predicted_deviation),
         "surrogate_error": ("measurement", np.max([m.error for m in models.values()], axis=0)),
         "draws": (("draw", "parameter"), values[picked]),
-        "draw_model": ("draw", np.array(list(found))[of_model[picked]]),
+        "draw_model": ("draw", np.array(list(posteriors))[of_model[picked]]),
         "draw_predicted": (("draw", "measurement"), predicted[picked]),
         "prior_draws": (("prior_draw", "parameter"), prior[::20]),
         "predictive_p": ((), p_value),
-        "measured_quantity": ("measurement", [one.quantity for one in measurements]),
-        "measured_units": ("measurement", [one.units for one in measurements]),
+        "measured_quantity": (
+            "measurement",
+            [measurement.quantity for measurement in measurements],
+        ),
+        "measured_units": ("measurement", [measurement.units for measurement in measurements]),
         "measured_conditions": ("measurement", stated),
-        "measured_source": ("measurement", [one.source for one in measurements]),
+        "measured_source": ("measurement", [measurement.source for measurement in measurements]),
     }
-    names = {"parameter": list(free), "other_parameter": list(free), "model": list(found)}
+    names = {"parameter": list(free), "other_parameter": list(free), "model": list(posteriors)}
     dataset = xr.Dataset(variables, names)
     for name, words_of in _LONG_NAMES.items():
         dataset[name].attrs["long_name"] = words_of
@@ -370,19 +399,21 @@ _LONG_NAMES = {
 }
 
 
-def _doubt(model: Model, found: Posterior) -> str:
+def _doubt(model: Model, posterior: Posterior) -> str:
     """Return why a posterior is not to be trusted; "" where nothing speaks against it."""
-    if not found.effective >= FEWEST:
+    if not posterior.effective >= FEWEST:
         return (
-            f"the effective sample size is {found.effective:.0f}, less than {FEWEST:g}: the data "
-            "are too precise for the sampled ranges, or contradict them: narrow the ranges"
+            f"the effective sample size is {posterior.effective:.0f}, less than {FEWEST:g}: the "
+            "data are too precise for the sampled ranges, or contradict them: narrow the ranges"
         )
-    for at, name in enumerate(model.free):
-        column = found.points[:, at]
-        for end, there in (("lower", column < EDGE), ("upper", column > 1 - EDGE)):
-            mass = float(found.weights[there].sum())
+    for parameter, name in enumerate(model.free):
+        column = posterior.points[:, parameter]
+        for end, leaning in (("lower", column < EDGE), ("upper", column > 1 - EDGE)):
+            mass = float(posterior.weights[leaning].sum())
             if mass > LEANING:
-                edge = model.values(np.full((1, len(model.free)), float(end == "upper")))[0, at]
+                edge = model.values(np.full((1, len(model.free)), float(end == "upper")))[
+                    0, parameter
+                ]
                 return (
                     f"{name}: {100 * mass:.0f} % of the posterior leans on the {end} end of the "
                     f"range ({edge:.4g} {model.surrogate.units(name)}): sample a wider one"

@@ -76,23 +76,23 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     sample = Sample.of(runs)
     if sample.settings["method"] == "sobol":
         sobol.check(sample)
-    rows, level, given = sample.draws, sample.confidence, limits(runs)
-    columns = {name: sample.runs[name].values[rows] for name in sample.parameters if given}
-    found: list[dict[str, Any]] = []
+    rows, level, bounds = sample.draws, sample.confidence, limits(runs)
+    columns = {name: sample.runs[name].values[rows] for name in sample.parameters if bounds}
+    entries: list[dict[str, Any]] = []
     verdicts = []
     for name in listed(runs, "responses"):
         outputs = drawn_outputs(sample.runs, name)
-        found.append(_moments(outputs, level) | _quantiles(outputs, level))
+        entries.append(_moments(outputs, level) | _quantiles(outputs, level))
         verdicts.append(_verdict(outputs, sample, rows))
-        if given:
-            limit = given.get(name, np.nan)
-            found[-1] |= _exceedance(outputs, limit, level) | filtered(outputs, limit, columns)
+        if bounds:
+            limit = bounds.get(name, np.nan)
+            entries[-1] |= _exceedance(outputs, limit, level) | filtered(outputs, limit, columns)
     variables: dict[str, Any] = {}
-    words = f"{100 * level:g} %"
+    percent = f"{100 * level:g} %"
     for name, (dims, units, long_name) in _VARIABLES.items():
-        if name in found[0]:
-            attrs = {"long_name": long_name.format(words)} | ({"units": units} if units else {})
-            stacked = np.array([entry[name] for entry in found])
+        if name in entries[0]:
+            attrs = {"long_name": long_name.format(percent)} | ({"units": units} if units else {})
+            stacked = np.array([entry[name] for entry in entries])
             variables[name] = (("response", *dims), stacked, attrs)
     codes = xr.DataArray([int(verdict) for verdict in verdicts], dims="response")
     variables["distribution_verdict"] = flagged(
@@ -101,7 +101,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     coordinates = labels(runs)
     attrs = {"long_name": "probability of a response below its quantile", "units": "1"}
     coordinates["probability"] = ("probability", list(PROBABILITIES), attrs)
-    if given:
+    if bounds:
         attrs = {"long_name": "varied parameter, by itself"}
         coordinates["varied_parameter"] = ("varied_parameter", list(sample.parameters), attrs)
     return xr.Dataset(variables, coordinates)
@@ -162,11 +162,11 @@ _VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
 def _moments(outputs: Floats, level: float) -> dict[str, float]:
     """Return counts and moments of outputs (draws,), NaN where there are too few."""
     values = outputs[~np.isnan(outputs)]
-    found = {"number_of_draws": outputs.size, "missing_draws": outputs.size - values.size}
+    counts = {"number_of_draws": outputs.size, "missing_draws": outputs.size - values.size}
     names = ("mean", "mean_interval", "standard_deviation", "standard_deviation_interval")
     if values.size < 2:
         mean = float(values.mean()) if values.size else np.nan
-        return found | dict.fromkeys(names, np.nan) | {"mean": mean}
+        return counts | dict.fromkeys(names, np.nan) | {"mean": mean}
     deviation = float(values.std(ddof=1))
     centred = values - values.mean()
     second, fourth = (float((centred**power).mean()) for power in (2, 4))
@@ -176,7 +176,7 @@ def _moments(outputs: Floats, level: float) -> dict[str, float]:
     student = float(scipy.stats.t.ppf(upper, values.size - 1))
     margins = student * deviation / np.sqrt(values.size), scipy.stats.norm.ppf(upper) * error
     moments = float(values.mean()), margins[0], deviation, margins[1]
-    return found | dict(zip(names, moments, strict=True))
+    return counts | dict(zip(names, moments, strict=True))
 
 
 def _quantiles(outputs: Floats, level: float) -> dict[str, Floats]:
@@ -218,34 +218,34 @@ def _exceedance(outputs: Floats, limit: float, level: float) -> dict[str, float]
         ends = above / total, (above + missing) / total
         shares = above / (total - missing), fewest.low, most.high, *ends
         values = list(map(float, shares))
-    exceedance = {f"exceedance_{name}": each for name, each in zip(names, values, strict=True)}
+    exceedance = {f"exceedance_{name}": value for name, value in zip(names, values, strict=True)}
     return {"limit": limit, "exceeding_draws": above} | exceedance
 
 
 def filtered(outputs: Floats, limit: float, columns: dict[str, Any]) -> dict[str, list[float]]:
     """Return how far parameters (draws,) of outputs above the limit are from those of others."""
     answered, above = ~np.isnan(outputs), outputs > limit
-    one, other = above, answered & ~above
+    other = answered & ~above
     rows: list[tuple[float, float, float]] = []
     for values in columns.values():
-        if np.isnan(limit) or not one.any() or not other.any():
+        if np.isnan(limit) or not above.any() or not other.any():
             rows.append((np.nan, np.nan, np.nan))
         elif values.dtype.kind in "if":
             with warnings.catch_warnings():  # that it takes the asymptotic value
                 warnings.simplefilter("ignore", RuntimeWarning)
-                test = scipy.stats.ks_2samp(values[one], values[other])
+                test = scipy.stats.ks_2samp(values[above], values[other])
             # +1 where the cumulative distribution of those above the limit is the larger one
             rows.append((test.statistic, -test.statistic_sign, test.pvalue))
         else:
-            words = np.unique(values[answered])
+            categories = np.unique(values[answered])
             table = np.array(
-                [[(values[which] == word).sum() for word in words] for which in (one, other)]
+                [[(values[which] == word).sum() for word in categories] for which in (above, other)]
             )
             shares = table / table.sum(axis=1, keepdims=True)
             distance = 0.5 * float(np.abs(shares[0] - shares[1]).sum())
             rows.append((distance, 0.0, float(scipy.stats.chi2_contingency(table).pvalue)))
     names = ("exceedance_distance", "exceedance_direction", "exceedance_p_value")
-    return {name: [float(row[at]) for row in rows] for at, name in enumerate(names)}
+    return {name: [float(row[position]) for row in rows] for position, name in enumerate(names)}
 
 
 def _verdict(outputs: Floats, sample: Sample, rows: NDArray[np.int64]) -> DistributionVerdict:
@@ -301,35 +301,38 @@ COLUMNS = (
 def table_rows(analysis: xr.Dataset) -> Iterator[dict[str, Any]]:
     """Yield every number of the distributions by COLUMNS, NaN where there is none."""
     for name in analysis["response"].values.tolist() if "quantile" in analysis else ():
-        found = analysis.sel(response=name)
+        entry = analysis.sel(response=name)
         row: dict[str, Any] = {
             "response": name,
-            "draws": int(found["number_of_draws"]),
-            "missing": int(found["missing_draws"]),
-            "verdict": names(DistributionVerdict)[int(found["distribution_verdict"])],
+            "draws": int(entry["number_of_draws"]),
+            "missing": int(entry["missing_draws"]),
+            "verdict": names(DistributionVerdict)[int(entry["distribution_verdict"])],
         }
-        own = row | {"units": str(found["response_units"].item())}
+        dimensional = row | {"units": str(entry["response_units"].item())}
         for key in ("mean", "standard_deviation"):
-            value, margin = float(found[key]), float(found[f"{key}_interval"])
+            value, margin = float(entry[key]), float(entry[f"{key}_interval"])
             ends = {"low": value - margin, "high": value + margin}
-            yield own | {"quantity": key, "at": "", "value": value} | ends
-        for at in found["probability"].values.tolist():
+            yield dimensional | {"quantity": key, "at": "", "value": value} | ends
+        for probability in entry["probability"].values.tolist():
             keys = {"value": "quantile", "low": "quantile_low", "high": "quantile_high"}
-            values = {key: float(found[each].sel(probability=at)) for key, each in keys.items()}
-            yield own | {"quantity": "quantile", "at": at} | values
-        if "limit" not in found or np.isnan(found["limit"]):
+            values = {
+                key: float(entry[variable].sel(probability=probability))
+                for key, variable in keys.items()
+            }
+            yield dimensional | {"quantity": "quantile", "at": probability} | values
+        if "limit" not in entry or np.isnan(entry["limit"]):
             continue
         row |= {"units": "1"}
         keys = {f"exceedance_{key}": "" for key in ("probability", "if_none", "if_all")}
         for key in keys:
             ends = {}
             if key == "exceedance_probability":
-                ends = {end: float(found[f"exceedance_{end}"]) for end in ("low", "high")}
-            limit = {"at": float(found["limit"]), "value": float(found[key])}
+                ends = {end: float(entry[f"exceedance_{end}"]) for end in ("low", "high")}
+            limit = {"at": float(entry["limit"]), "value": float(entry[key])}
             yield row | {"quantity": key} | limit | ends
         for key in ("exceedance_distance", "exceedance_direction", "exceedance_p_value"):
-            for at, value in found[key].to_series().items():
-                yield row | {"quantity": key, "at": at, "value": value}
+            for parameter, value in entry[key].to_series().items():
+                yield row | {"quantity": key, "at": parameter, "value": value}
 
 
 def write_csv(analysis: xr.Dataset, path: Path) -> None:

@@ -108,14 +108,14 @@ def modes(column: Floats, weights: Floats) -> list[tuple[Floats, float]]:
         if masses.size == 1 or masses.min() >= _RARE:
             break
         peaks = np.delete(peaks, masses.argmin())
-    found = []
+    intervals = []
     for (low, high), mass in zip(pairwise(ends), masses.tolist(), strict=True):
         inside = (column >= low) & (column <= high)
         interval = np.quantile(
             column[inside], (0.025, 0.975), weights=weights[inside], method="inverted_cdf"
         )
-        found.append((interval, mass))
-    return found
+        intervals.append((interval, mass))
+    return intervals
 
 
 def posterior(
@@ -168,9 +168,9 @@ def _sharpened(
         log_ratio = log_ratio.reshape(blunt.size, _EACH)
         powers = _sharpest(log_ratio)
         weights = normalised(powers[:, np.newaxis] * log_ratio)
-        for at, column, own in zip(blunt, weights, points, strict=True):
-            single = _Mixture.of(own, column[np.newaxis])
-            means[at], factors[at] = single.means[0], single.factors[0]
+        for component, column, draws in zip(blunt, weights, points, strict=True):
+            single = _Mixture.of(draws, column[np.newaxis])
+            means[component], factors[component] = single.means[0], single.factors[0]
         blunt = blunt[powers < 1.0]
         if not blunt.size:
             break

@@ -76,22 +76,28 @@ def compared(
     (contact law, beam model, ...): the variables of _LONG_NAMES as compared_<name>, in SI units,
     and compared_verdict (CF flags, see Agreement).
     """
-    found = [(one, row) for one in measurements for row in _rows(runs, analysis, one)]
+    pairs = [
+        (measurement, row)
+        for measurement in measurements
+        for row in _rows(runs, analysis, measurement)
+    ]
     of_measurement = ("quantity", "units", "conditions", "source", "simulated")
-    table: dict[str, Any] = {key: [getattr(one, key) for one, _ in found] for key in of_measurement}
-    table["conditions"] = [json.dumps(dict(each)) for each in table["conditions"]]
+    table: dict[str, Any] = {
+        key: [getattr(measurement, key) for measurement, _ in pairs] for key in of_measurement
+    }
+    table["conditions"] = [json.dumps(dict(conditions)) for conditions in table["conditions"]]
     table["simulated"] = np.array(table["simulated"], dtype=np.int8)
-    table |= {key: [getattr(row, key) for _, row in found] for key in ("case", "reason")}
-    measured = np.array([one.value for one, _ in found])
-    expanded = COVERAGE * np.array([one.standard_uncertainty for one, _ in found])
-    model, numerical = np.array([(row.model, row.numerical) for _, row in found]).reshape(-1, 2).T
+    table |= {key: [getattr(row, key) for _, row in pairs] for key in ("case", "reason")}
+    measured = np.array([measurement.value for measurement, _ in pairs])
+    expanded = COVERAGE * np.array([measurement.standard_uncertainty for measurement, _ in pairs])
+    model, numerical = np.array([(row.model, row.numerical) for _, row in pairs]).reshape(-1, 2).T
     table |= {"measured": measured, "uncertainty": expanded, "model": model, "numerical": numerical}
     table |= {"difference": model - measured, "combined": np.hypot(expanded, numerical)}
     variables: dict[str, Any] = {
-        f"compared_{name}": ("comparison", each, {"long_name": _LONG_NAMES[name]})
-        for name, each in table.items()
+        f"compared_{name}": ("comparison", column, {"long_name": _LONG_NAMES[name]})
+        for name, column in table.items()
     }
-    codes = xr.DataArray([int(row.verdict) for _, row in found], dims="comparison")
+    codes = xr.DataArray([int(row.verdict) for _, row in pairs], dims="comparison")
     variables["compared_verdict"] = flagged(codes, Agreement, "verdict on measurement and model")
     return xr.Dataset(variables)
 
@@ -113,50 +119,56 @@ _LONG_NAMES = {
 }
 
 
-def _rows(runs: xr.Dataset, analysis: xr.Dataset, one: Measurement) -> Iterator[_Row]:
+def _rows(runs: xr.Dataset, analysis: xr.Dataset, measurement: Measurement) -> Iterator[_Row]:
     where: dict[str, int] = {}
-    for name, wanted in one.conditions.items():
+    for name, condition in measurement.conditions.items():
         if name not in runs.coords:
             reason = f"the study has no {name}, which the measurement states"
             yield _Row(Agreement.OTHER_IMPACT, reason)
             return
-        given = runs[name]
-        at = np.flatnonzero([same(each, wanted) for each in given.values.ravel().tolist()])
-        if given.ndim == 0 and not at.size:
-            reason = f"the study has {name} = {given.item()!r}, the measurement {wanted!r}"
+        coordinate = runs[name]
+        positions = np.flatnonzero(
+            [same(value, condition) for value in coordinate.values.ravel().tolist()]
+        )
+        if coordinate.ndim == 0 and not positions.size:
+            reason = f"the study has {name} = {coordinate.item()!r}, the measurement {condition!r}"
             yield _Row(Agreement.OTHER_IMPACT, reason)
             return
-        if given.ndim and "run" not in given.dims:
-            if not at.size:
-                yield _Row(Agreement.NOT_JUDGED, f"the study has no run at {name} = {wanted!r}")
+        if coordinate.ndim and "run" not in coordinate.dims:
+            if not positions.size:
+                yield _Row(Agreement.NOT_JUDGED, f"the study has no run at {name} = {condition!r}")
                 return
-            where[name] = int(at[0])
+            where[name] = int(positions[0])
     if "run" in runs.dims:
         reason = "a sample has no single prediction: use a grid, or calibrate"
         yield _Row(Agreement.NOT_JUDGED, reason)
         return
-    if one.quantity not in runs.attrs.get("responses", list(runs.data_vars)):
-        yield _Row(Agreement.NOT_JUDGED, f"the study leaves out the response {one.quantity}")
+    if measurement.quantity not in runs.attrs.get("responses", list(runs.data_vars)):
+        yield _Row(
+            Agreement.NOT_JUDGED, f"the study leaves out the response {measurement.quantity}"
+        )
         return
-    values = _finest(usable(runs, one.quantity).squeeze("response", drop=True)).isel(where)
+    values = _finest(usable(runs, measurement.quantity).squeeze("response", drop=True)).isel(where)
     status = _finest(runs["status"]).isel(where)
-    share = _numerical(analysis, one.quantity, runs).isel(
-        {name: at for name, at in where.items() if name in runs.dims}, missing_dims="ignore"
+    share = _numerical(analysis, measurement.quantity, runs).isel(
+        {name: index for name, index in where.items() if name in runs.dims}, missing_dims="ignore"
     )
-    words = [str(dim) for dim in values.dims if values[dim].dtype.kind not in "if"]
-    if numbers := [str(dim) for dim in values.dims if dim not in words and values.sizes[dim] > 1]:
+    categorical = [str(dim) for dim in values.dims if values[dim].dtype.kind not in "if"]
+    if numbers := [
+        str(dim) for dim in values.dims if dim not in categorical and values.sizes[dim] > 1
+    ]:
         reason = f"state {', '.join(numbers)}, which the study varies, in its conditions"
         yield _Row(Agreement.NOT_JUDGED, reason)
         return
     for position in np.ndindex(*values.shape):
         place = dict(zip(map(str, values.dims), position, strict=True))
-        case = ", ".join(str(values[dim].values[place[dim]]) for dim in words)
+        case = ", ".join(str(values[dim].values[place[dim]]) for dim in categorical)
         answer = float(values.isel(place))
         error = abs(answer) * float(share.isel(place, missing_dims="ignore"))
-        yield _judged(one, case, answer, error, int(status.isel(place)))
+        yield _judged(measurement, case, answer, error, int(status.isel(place)))
 
 
-def _judged(one: Measurement, case: str, answer: float, error: float, status: int) -> _Row:
+def _judged(measurement: Measurement, case: str, answer: float, error: float, status: int) -> _Row:
     if not np.isfinite(answer):
         why = "; ".join(reasons(status & FAILED)) or "no reason is recorded"
         return _Row(Agreement.NOT_JUDGED, f"the run has no answer: {why}", case)
@@ -166,18 +178,18 @@ def _judged(one: Measurement, case: str, answer: float, error: float, status: in
             "discretisation: auto"
         )
         return _Row(Agreement.NOT_JUDGED, reason, case, answer)
-    difference = abs(answer - one.value)
-    within = difference <= np.hypot(COVERAGE * one.standard_uncertainty, error)
+    difference = abs(answer - measurement.value)
+    within = difference <= np.hypot(COVERAGE * measurement.standard_uncertainty, error)
     verdict = Agreement.COMPATIBLE if within else Agreement.INCOMPATIBLE
     outside = "beyond the range of the contact law" if status & MARKED else ""
     return _Row(verdict, outside, case, answer, error)
 
 
-def same(given: Any, wanted: Any) -> bool:
+def same(condition: Any, other: Any) -> bool:
     """Return whether two conditions are the same: words, or numbers to within 1e-6."""
-    if isinstance(given, str) or isinstance(wanted, str):
-        return bool(given == wanted)
-    return bool(abs(given - wanted) <= _SAME * max(abs(given), abs(wanted)))
+    if isinstance(condition, str) or isinstance(other, str):
+        return bool(condition == other)
+    return bool(abs(condition - other) <= _SAME * max(abs(condition), abs(other)))
 
 
 def _finest(array: xr.DataArray) -> xr.DataArray:

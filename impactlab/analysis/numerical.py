@@ -64,36 +64,36 @@ def numerical(
     the response, and an error of relative length e moves either length by no more than e, so that
     an index S is moved by no more than about 2 e sqrt(S) + e^2.
     """
-    found = {} if resolution is None else _of_responses(runs, resolution)
+    variables = {} if resolution is None else _of_responses(runs, resolution)
     changed, estimator = xr.Dataset(), _BOUND
     if refinement is not None:
         _check_refinement(runs, refinement)
         changed = measured(refinement)
         estimator = _MEASURED.format(refinement.attrs["base_samples"]) + _BOUND
     nothing = xr.full_like(analysis["response"], np.inf, dtype=float).reset_coords(drop=True)
-    share = found.get("numerical_share", nothing)
+    share = variables.get("numerical_share", nothing)
     orders = [order for order in ORDERS if order in analysis]
     for order in orders:
         index = analysis[order]
         bound = 2.0 * share**0.5 * index.clip(min=0.0) ** 0.5 + share
-        known = changed.get(order, xr.full_like(bound, np.nan))
-        amount = xr.where(known.notnull(), known, bound)
+        distance = changed.get(order, xr.full_like(bound, np.nan))
+        amount = xr.where(distance.notnull(), distance, bound)
         most = (1.0 - index).where(index < 0.5, index)
         amount = amount.where(amount < most, most).where(index.notnull())
-        found[f"{order}_numerical"] = amount.transpose(*index.dims).assign_attrs(
+        variables[f"{order}_numerical"] = amount.transpose(*index.dims).assign_attrs(
             long_name=f"how far the {order.replace('_', '-')} index may be off numerically",
             units="1",
             estimator=estimator,
         )
     if orders:
-        given = changed[orders[0]].notnull().any("parameter") if changed else share.isnull()
+        refined = changed[orders[0]].notnull().any("parameter") if changed else share.isnull()
         otherwise = xr.where(np.isfinite(share), NumericalFrom.BOUND, NumericalFrom.NOTHING)
-        found["numerical_from"] = flagged(
-            xr.where(given, NumericalFrom.MEASURED, otherwise),
+        variables["numerical_from"] = flagged(
+            xr.where(refined, NumericalFrom.MEASURED, otherwise),
             NumericalFrom,
             "what the numerical uncertainty of the indices rests on",
         )
-    parts = xr.Dataset(found), changed.drop_vars(ORDERS, errors="ignore")
+    parts = xr.Dataset(variables), changed.drop_vars(ORDERS, errors="ignore")
     return xr.merge(parts, join="exact", compat="equals").reset_coords(drop=True)
 
 
@@ -101,25 +101,25 @@ def _of_responses(runs: xr.Dataset, resolution: xr.Dataset) -> dict[str, xr.Data
     """Return numerical_uncertainty and numerical_share. Raises ValueError for other runs' ones."""
     again = f"make it again (impactlab recommend studies/{runs.attrs.get('study', 'NAME')}.yaml)"
     for name in ("nodes", "points", "courant"):
-        here, there = runs[name].values, resolution.attrs.get(f"grid_{name}")
-        if here.ndim or here != there:
+        used, expected = runs[name].values, resolution.attrs.get(f"grid_{name}")
+        if used.ndim or used != expected:
             raise ValueError(
-                f"the resolution was found for {name} = {there}, the runs have {here}: {again}"
+                f"the resolution was found for {name} = {expected}, the runs have {used}: {again}"
             )
     if runs.attrs.get("study_sha256") != resolution.attrs.get("study_sha256"):
         raise ValueError(f"the resolution was found for another text of the study file: {again}")
     names = listed(runs, "responses")
-    asked = resolution.sel(response=names).reset_coords(drop=True)
+    requested = resolution.sel(response=names).reset_coords(drop=True)
     long_name = "relative numerical uncertainty, the worst of the corner cases"
-    relative = asked["grid_relative"].assign_attrs(long_name=long_name, units="1")
+    relative = requested["grid_relative"].assign_attrs(long_name=long_name, units="1")
     if "run" not in runs.dims:
         return {"numerical_uncertainty": relative}
     deviations = [usable(runs, name).std(set(runs["status"].dims)) for name in names]
     deviation = xr.concat(deviations, "response", coords="minimal", compat="override")
-    squares = (asked["grid_uncertainty"] ** 2).mean("case")
+    squares = (requested["grid_uncertainty"] ** 2).mean("case")
     share = (squares / deviation.where(deviation > 0) ** 2).where(squares > 0, 0.0)
-    words = "share of the variance that may be numerical error"
-    share = share.fillna(np.inf).reset_coords(drop=True).assign_attrs(long_name=words, units="1")
+    meaning = "share of the variance that may be numerical error"
+    share = share.fillna(np.inf).reset_coords(drop=True).assign_attrs(long_name=meaning, units="1")
     return {"numerical_uncertainty": relative, "numerical_share": share}
 
 
@@ -135,12 +135,12 @@ _TO_LIMIT = 2.0  # distance to the limit over change, where each refinement take
 
 def _check_refinement(runs: xr.Dataset, refinement: xr.Dataset) -> None:
     """Raise ValueError unless the used grid of the refinement gives what the runs give."""
-    there, ordered = usable(refinement).sel(grid=USED), in_order(runs)
-    numbers, wanted = ordered["run"].values, there["run"].values
-    places = np.searchsorted(numbers, wanted).clip(max=numbers.size - 1)
-    here = usable(ordered.isel(run=places)).transpose(*there.dims)
-    same = np.allclose(here, there, rtol=ROUND_OFF, atol=0.0, equal_nan=True)
-    if not same or (numbers[places] != wanted).any():
+    refined, ordered = usable(refinement).sel(grid=USED), in_order(runs)
+    numbers, refined_numbers = ordered["run"].values, refined["run"].values
+    places = np.searchsorted(numbers, refined_numbers).clip(max=numbers.size - 1)
+    original = usable(ordered.isel(run=places)).transpose(*refined.dims)
+    same = np.allclose(original, refined, rtol=ROUND_OFF, atol=0.0, equal_nan=True)
+    if not same or (numbers[places] != refined_numbers).any():
         raise ValueError(
             "the refinement was made from other runs: make it again (impactlab refine "
             f"results/{runs.attrs.get('study', 'NAME')}/runs.nc)"
@@ -173,9 +173,9 @@ def measured(refinement: xr.Dataset) -> xr.Dataset:
     used = f"on the first {refinement.attrs['base_samples']} base samples"
     dataset = xr.Dataset(coords={"response": names, "parameter": list(sample.factors)})
     for order in ORDERS:
-        words = f"change of the {order.replace('_', '-')} index with half the spacing, {used}"
-        change = {"long_name": words, "units": "1"}
-        width = change | {"long_name": f"half-width of the interval of the {words}"}
+        description = f"change of the {order.replace('_', '-')} index with half the spacing, {used}"
+        change = {"long_name": description, "units": "1"}
+        width = change | {"long_name": f"half-width of the interval of the {description}"}
         for ending, attrs in (("", {}), ("_change", change), ("_change_interval", width)):
             stacked = [row.get(f"{order}{ending}", gap) for row in rows]
             dataset[f"{order}{ending}"] = (("response", "parameter"), stacked, attrs)
@@ -196,7 +196,9 @@ def _of_response(
         replicated.append(estimates(Outputs.of(complete, sample).means(), factors))
     answer: dict[str, Floats] = {}
     for order in ORDERS:
-        indices = {grid: each[order] for grid, each in zip(spacings, replicated, strict=True)}
+        indices = {
+            grid: estimate[order] for grid, estimate in zip(spacings, replicated, strict=True)
+        }
         changes = {grid: values - indices[USED] for grid, values in indices.items()}
         change = {grid: values[0] for grid, values in changes.items()}
         width = {

@@ -86,16 +86,16 @@ def cuts(values: Floats) -> Floats:
     while parts:
         part = parts.pop()
         gaps = np.diff(part)[fewest - 1 : part.size - fewest]
-        for at in np.argsort(-gaps, kind="stable")[: np.count_nonzero(gaps > _GAP * spread)]:
-            size = fewest + int(at)  # of the lower regime
+        for position in np.argsort(-gaps, kind="stable")[: np.count_nonzero(gaps > _GAP * spread)]:
+            size = fewest + int(position)  # of the lower regime
             most = min(size, part.size - size) - 1
             near, far = (
                 max(part[size - 1] - part[size - 1 - m], part[size + m] - part[size])
                 for m in (FEWEST - 1, most)
             )
             chance = (ordered.size / _CHANCE) ** (1 / most) - 1
-            if gaps[at] > max(_BESIDE * near, chance * far):
-                middles.append(part[size - 1] + gaps[at] / 2)
+            if gaps[position] > max(_BESIDE * near, chance * far):
+                middles.append(part[size - 1] + gaps[position] / 2)
                 parts += [part[:size], part[size:]]
                 break
     return np.sort(middles)
@@ -107,8 +107,8 @@ def _repeat(values: Floats) -> bool:
     So do they where nine in ten share it (SensitivityVerdict.MOSTLY_CONSTANT).
     """
     counts = np.unique(values, return_counts=True)[1]
-    others = values.size - counts.max()
-    return bool(others <= 0.1 * values.size or 2 * (counts.size - 1) < others)
+    rest = values.size - counts.max()
+    return bool(rest <= 0.1 * values.size or 2 * (counts.size - 1) < rest)
 
 
 def jumps(places: Floats, values: Floats) -> NDArray[np.int64]:
@@ -123,6 +123,9 @@ def jumps(places: Floats, values: Floats) -> NDArray[np.int64]:
     steps = np.abs(np.diff(values))
     slopes = steps / np.diff(places)
     large = np.flatnonzero(steps[1:-1] > _JUMP * np.ptp(values[finite])) + 1
-    sides = ((slopes[max(at - 2, 0) : at], slopes[at + 1 : at + 3]) for at in large)
+    sides = (
+        (slopes[max(position - 2, 0) : position], slopes[position + 1 : position + 3])
+        for position in large
+    )
     beside = np.array([np.concatenate(pair).max() for pair in sides])
     return large[slopes[large] > _STEEP * beside]

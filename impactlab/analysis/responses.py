@@ -28,7 +28,7 @@ def correlations(runs: xr.Dataset) -> list[tuple[str, str, float]]:
         return []
     ranks = np.atleast_1d(runs.attrs["rank_correlations"]).tolist()
     pairs = [entry.split() for entry in listed(runs, "correlated")]
-    return [(one, other, float(rank)) for (one, other), rank in zip(pairs, ranks, strict=True)]
+    return [(name, other, float(rank)) for (name, other), rank in zip(pairs, ranks, strict=True)]
 
 
 def usable(runs: xr.Dataset, response: str | None = None) -> xr.DataArray:
@@ -45,7 +45,7 @@ def usable(runs: xr.Dataset, response: str | None = None) -> xr.DataArray:
         values = runs[names].compute().to_array("response", name="value")
     else:
         alone = runs[response].rename("value")
-        of_runs = [name for name, each in alone.coords.items() if "run" in each.dims]
+        of_runs = [name for name, coordinate in alone.coords.items() if "run" in coordinate.dims]
         values = alone.drop_vars(of_runs).compute().expand_dims(response=[response])
     values = values.astype(float, copy=False).assign_coords(described)
     status = xr.DataArray(runs["status"].variable.compute())
@@ -66,10 +66,13 @@ def labels(runs: xr.Dataset, *names: Any) -> dict[str, Any]:
             f"the runs of study {runs.attrs.get('study', '?')!r} hold no {', '.join(absent)}, "
             "which its attribute `responses` lists: solve the study again"
         )
-    found: dict[str, Any] = {"response": ("response", of, {"long_name": "response"})}
+    coordinates: dict[str, Any] = {"response": ("response", of, {"long_name": "response"})}
     for key in ("units", "long_name"):
-        found[f"response_{key}"] = "response", [str(runs[name].attrs.get(key, "")) for name in of]
-    return found
+        coordinates[f"response_{key}"] = (
+            "response",
+            [str(runs[name].attrs.get(key, "")) for name in of],
+        )
+    return coordinates
 
 
 def in_order(runs: xr.Dataset) -> xr.Dataset:
@@ -115,10 +118,10 @@ class Sample:
     def words(self) -> dict[str, list[str]]:
         """The words of each parameter that is drawn among words, by its name."""
         attrs = {name: self.runs[name].attrs for name in self.parameters}
-        drawn = {
-            n: each["values"] for n, each in attrs.items() if each.get("distribution") == CHOICE
+        choices = {
+            n: entry["values"] for n, entry in attrs.items() if entry.get("distribution") == CHOICE
         }
-        return {name: [str(word) for word in np.atleast_1d(drawn[name])] for name in drawn}
+        return {name: [str(word) for word in np.atleast_1d(choices[name])] for name in choices}
 
     def column(self, parameter: str) -> Floats:
         """Return a parameter in all runs, (runs,), in SI units; of words, their places in `words`.
@@ -128,11 +131,11 @@ class Sample:
         values = self.runs[parameter].values
         if parameter not in self.words:
             return np.asarray(values, float)
-        known = self.words[parameter]
-        found = sum(at * (values == word) for at, word in enumerate(known, 1))
-        if not np.all(found):
+        choices = self.words[parameter]
+        places = sum(place * (values == word) for place, word in enumerate(choices, 1))
+        if not np.all(places):
             raise ValueError(f"the runs of {self.study} hold words of {parameter} not drawn from")
-        return np.asarray(found, float) - 1
+        return np.asarray(places, float) - 1
 
     def rows(self, runs: NDArray[np.int64]) -> Floats:
         """Return the parameters of these runs, (runs, parameter); one column is read at a time."""
@@ -180,11 +183,11 @@ class Sample:
             )
         return int(self.settings[setting])
 
-    def expect(self, runs: int, words: str) -> None:
-        """Raise ValueError unless the sample has this number of runs; words: where it is from."""
+    def expect(self, runs: int, origin: str) -> None:
+        """Raise ValueError unless the sample has this number of runs; origin: where it is from."""
         if self.size != runs:
             raise ValueError(
-                f"{self.study} has {self.size} runs, but {words} make {runs}: solve it again"
+                f"{self.study} has {self.size} runs, but {origin} make {runs}: solve it again"
             )
 
     def ordered(self) -> None:

@@ -67,7 +67,7 @@ def flagged(codes: xr.DataArray, kind: type[Verdict], long_name: str) -> xr.Data
 
 
 def verdict_variables(
-    codes: xr.DataArray, kind: type[Verdict], axis: str, words: str
+    codes: xr.DataArray, kind: type[Verdict], axis: str, subject: str
 ) -> dict[str, xr.DataArray]:
     """Return the variables that hold a verdict on (response, *dims): each, and the worst.
 
@@ -75,8 +75,8 @@ def verdict_variables(
     """
     rest = [dim for dim in codes.dims if dim != "response"]
     return {
-        f"{axis}_verdict": flagged(codes, kind, f"verdict on {words}"),
+        f"{axis}_verdict": flagged(codes, kind, f"verdict on {subject}"),
         f"{axis}_summary": flagged(
-            codes.max(rest), kind, f"worst verdict on {words} over the rest of the grid"
+            codes.max(rest), kind, f"worst verdict on {subject} over the rest of the grid"
         ),
     }

@@ -95,11 +95,11 @@ def witness(
         "patch": patch,
         "duration": duration,
     }
-    asked = {name: text for name, text in options.items() if text}
+    texts = {name: text for name, text in options.items() if text}
     numbers = {
-        name.replace("-", "_"): given(f"--{name}", asked[name], units)
+        name.replace("-", "_"): given(f"--{name}", texts[name], units)
         for name, units in _UNITS.items()
-        if name in asked
+        if name in texts
     }
     speed = numbers.pop("velocity", None)
     case = case_of(read_impacts(study) if study else None, velocity=speed, contact=contact or None)
@@ -110,7 +110,7 @@ def witness(
         )
     plan = planned(case, **numbers)
     # So that no answers to other options are overwritten.
-    parts = [re.sub(r"[^\w.]+", "-", f"{name}-{text}") for name, text in asked.items()]
+    parts = [re.sub(r"[^\w.]+", "-", f"{name}-{text}") for name, text in texts.items()]
     folder = output or results_folder(case.name) / "_".join(["witness", *parts])
     problem = "" if deck and plan.mesh else plan.problem(workers)
     if problem and not (dry_run or force):

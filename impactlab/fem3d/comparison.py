@@ -97,8 +97,8 @@ def compared(solid: xr.Dataset, beams: xr.Dataset) -> xr.Dataset:
     the number of contacts, of which it tells nothing.
     """
     names = [name for name in RESPONSES if name in solid]
-    both = [runs[[*names, "status"]] for runs in (solid.expand_dims(beam_model=[SOLID]), beams)]
-    runs = xr.concat(both, "beam_model", coords="minimal", compat="override", combine_attrs="drop")
+    pair = [runs[[*names, "status"]] for runs in (solid.expand_dims(beam_model=[SOLID]), beams)]
+    runs = xr.concat(pair, "beam_model", coords="minimal", compat="override", combine_attrs="drop")
     sound = [runs[name].where((runs["status"] & status_bits([name])) == 0) for name in names]
     value = np.array(sound, dtype=float)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -120,9 +120,9 @@ def compared(solid: xr.Dataset, beams: xr.Dataset) -> xr.Dataset:
     )
 
 
-def write_csv(found: xr.Dataset, path: Path) -> None:
+def write_csv(comparison: xr.Dataset, path: Path) -> None:
     """Write one row per response and model, in SI units; all or nothing (see files.replaced)."""
-    table = found.to_dataframe(["response", "model"]).reset_index()
+    table = comparison.to_dataframe(["response", "model"]).reset_index()
     why = table["status"].map(lambda status: "; ".join(reasons(status)))
     table["missing_because"] = why.where(table["value"].isna(), "")
     share = 100.0 * table["difference"]
@@ -165,34 +165,34 @@ def write_vtu(dataset: xr.Dataset, path: Path) -> None:
         Path(written).replace(unfinished)
 
 
-def print_comparison(found: xr.Dataset, solid: xr.Dataset) -> None:
+def print_comparison(comparison: xr.Dataset, solid: xr.Dataset) -> None:
     """Print one row per response: the 3-D value, and each beam model's with its difference in %.
 
-    found: see compared. solid: a dataset of fem3d.solver. Below the table, the missing responses
-    and the reasons, by model, and where more yields than the responses show: elements with one
-    integration point yield as a whole, and late in bending.
+    comparison: see compared. solid: a dataset of fem3d.solver. Below the table, the missing
+    responses and the reasons, by model, and where more yields than the responses show: elements
+    with one integration point yield as a whole, and late in bending.
     """
-    names = found["model"].values.tolist()
+    names = comparison["model"].values.tolist()
     models = ["3-D" if name == SOLID else name.replace("_", "-").title() for name in names]
     right = [Column(name, justify="right") for name in models]
     table = Table(  # narrow enough for 80 columns
         Column("response", no_wrap=True), *right, box=box.SIMPLE, show_edge=False, padding=0
     )
-    for name in found["response"].values.tolist():
-        one = found.sel(response=name)
-        values = one["value"].rename(name).assign_attrs(units=one["units"].item())
+    for name in comparison["response"].values.tolist():
+        row = comparison.sel(response=name)
+        values = row["value"].rename(name).assign_attrs(units=row["units"].item())
         unit = display(values)  # fits the largest value
-        cells = map(_cell, unit(values), 100.0 * one["difference"].values)
+        cells = map(_cell, unit(values), 100.0 * row["difference"].values)
         table.add_row(f"{name} ({unit.symbol})" if unit.symbol else name, *cells)
     missing: dict[str, list[str]] = {}
-    for model, status in zip(models, found["status"].values.tolist(), strict=True):
+    for model, status in zip(models, comparison["status"].values.tolist(), strict=True):
         for reason in reasons(status):
             missing.setdefault(reason, []).append(model)
     console = Console()
     console.print(table)
     console.print("In %: difference from the 3-D FE model.", markup=False)
     for why in dict.fromkeys(UNLIKE.values()):
-        which = labels.listing([name for name, given in UNLIKE.items() if given == why])
+        which = labels.listing([name for name, cause in UNLIKE.items() if cause == why])
         console.print(f"not compared: {which}: {why}", markup=False)
     for reason, lacking in missing.items():
         who = "all models" if lacking == models else ", ".join(lacking)

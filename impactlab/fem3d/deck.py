@@ -123,7 +123,7 @@ def write_deck(
             )
     # Hertz's largest pressure is 2 E* a/(pi R), his indentation a^2/R.
     modulus, radius = hertz.effective_modulus(impact), contact_radius(impact)
-    given = flatten(impact, Discretisation())
+    values = flatten(impact, Discretisation())
     groups = {
         f"{_BODIES[body]}_{'FINE' if full else 'COARSE'}": (full, numbers)
         for body, full, numbers in mesh.groups()
@@ -136,7 +136,7 @@ def write_deck(
         duration=duration,
         interval=interval,
         plastic=plastic,
-        given=[(PARAMETERS[name], given[name]) for name in IMPACT_PARAMETERS if name in given],
+        given=[(PARAMETERS[name], values[name]) for name in IMPACT_PARAMETERS if name in values],
         geometry="\n".join(_geometry(mesh, groups, impact.sphere.radius, chosen)),
         groups=groups,
         materials={"BEAM": (beam, beam.density), "SPHERE": (ball, sphere_density(mesh, impact))},
@@ -152,13 +152,13 @@ def write_deck(
 
 def _outer(mesh: Mesh, body: int) -> tuple[Integers, Integers]:
     """Return the body's outer faces, (f, 2): element (from 0) and face (from 1); nodes, (f, 4)."""
-    own = np.flatnonzero(mesh.body == body)
-    nodes = mesh.elements[own][:, FACES].reshape(-1, 4)
+    numbers = np.flatnonzero(mesh.body == body)
+    nodes = mesh.elements[numbers][:, FACES].reshape(-1, 4)
     _, first, count = np.unique(
         np.sort(nodes, axis=1), axis=0, return_index=True, return_counts=True
     )
     outer = np.sort(first[count == 1])
-    faces = np.stack([own[outer // 6], outer % 6 + 1], axis=1)
+    faces = np.stack([numbers[outer // 6], outer % 6 + 1], axis=1)
     return faces, nodes[outer]
 
 
@@ -194,8 +194,8 @@ def _geometry(
     }
     for name, members in sets.items():
         yield f"*NSET, NSET={name}"
-        for at in range(0, len(members), _PER_LINE):
-            yield ", ".join(str(node + 1) for node in members[at : at + _PER_LINE])
+        for start in range(0, len(members), _PER_LINE):
+            yield ", ".join(str(node + 1) for node in members[start : start + _PER_LINE])
     # The sphere's surface below its centre, and the beam's top.
     on_plane = np.abs(mesh.nodes) < 1e-6 * mesh.element_size  # through the origin, across an axis
     ball, corners = _outer(mesh, SPHERE)
@@ -229,7 +229,7 @@ def _curve(material: Material, modulus: float) -> str:
 def _comment(text: str) -> str:
     """Return each line as a comment of lines that are not too long."""
     wrapper = textwrap.TextWrapper(96, initial_indent="** ", subsequent_indent="**   ")
-    lines = (line for words in text.splitlines() for line in wrapper.wrap(words))
+    lines = (line for paragraph in text.splitlines() for line in wrapper.wrap(paragraph))
     return "".join(f"{line}\n" for line in lines)
 
 

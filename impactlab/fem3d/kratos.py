@@ -91,7 +91,7 @@ _RESPONSES = (
 def to_dataset(run: Run) -> xr.Dataset:
     """Return all answers of a run, as described in solve_on."""
     peeq, info = run.engine.variable("ACCUMULATED_PLASTIC_STRAIN"), run.part.ProcessInfo
-    points = [each.CalculateOnIntegrationPoints(peeq, info) for each in run.part.Elements]
+    points = [element.CalculateOnIntegrationPoints(peeq, info) for element in run.part.Elements]
     strain = np.array(points)  # (e, 8)
     largest = strain.max(axis=1)
     # A contact that pauses for less than two steps is one.
@@ -349,7 +349,7 @@ def _steel(engine: Engine, part: Any, number: int, material: Material, density: 
             "Kratos has isotropic hardening only; set it to 0"
         )
     yield_stress = material.yield_stress * MPA
-    given = {
+    values = {
         "DENSITY": density * TONNES_PER_MM3,
         "YOUNG_MODULUS": material.youngs_modulus * MPA,
         "POISSON_RATIO": material.poissons_ratio,
@@ -359,7 +359,7 @@ def _steel(engine: Engine, part: Any, number: int, material: Material, density: 
         "HARDENING_EXPONENT": 0.0,
     }
     result = part.CreateNewProperties(number)
-    for name, value in given.items():
+    for name, value in values.items():
         result[engine.variable(name)] = value
     law = engine.core.KratosGlobals.GetConstitutiveLaw(LAW)
     result[engine.core.CONSTITUTIVE_LAW] = law.Clone()
@@ -376,8 +376,8 @@ def constrain(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
         variable = engine.variable(f"DISPLACEMENT_{axis}")
         for node in (nodes + 1).tolist():
             part.GetNode(node).Fix(variable)
-    given = {"VELOCITY_Z": impact.velocity, "VOLUME_ACCELERATION_Z": impact.gravity}
+    values = {"VELOCITY_Z": impact.velocity, "VOLUME_ACCELERATION_Z": impact.gravity}
     for node in (np.unique(mesh.elements[mesh.body == SPHERE]) + 1).tolist():
-        for name, value in given.items():
+        for name, value in values.items():
             for step in (0, 1):
                 part.GetNode(node).SetSolutionStepValue(engine.variable(name), step, -value * MM)

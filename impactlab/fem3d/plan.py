@@ -50,16 +50,16 @@ def case_of(
     Varied parameters keep their base value. velocity (m/s), contact: in place of the study's.
     Raises as Impact does.
     """
-    given = {"velocity": velocity, "contact": contact}
-    changed: Any = {name: value for name, value in given.items() if value is not None}
+    options = {"velocity": velocity, "contact": contact}
+    changed: Any = {name: value for name, value in options.items() if value is not None}
     if study is None:
         grid = Discretisation(nodes=601)  # as many for the beam models as the paper takes
         impact = replace(paper_impact(), **changed)
         return Case("paper", "the paper's case", impact, grid, _LONGEST, {})
     base, grid = with_values(study.impact, study.discretisation, study.sampling.fixed)
     values = flatten(base, grid) | {"sphere_mass": base.sphere.total_mass}
-    kept = [name for name in study.sampling.varied if name in values and name not in changed]
-    held = {name: values[name] for name in kept}
+    names = [name for name in study.sampling.varied if name in values and name not in changed]
+    held = {name: values[name] for name in names}
     impact = replace(base, **changed)
     return Case(study.name, str(study.path), impact, grid, study.duration, held)
 

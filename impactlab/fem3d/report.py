@@ -24,17 +24,17 @@ _PARTS = (
 
 def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     """Return the sections of a study with 3-D runs beside others, else none."""
-    found = []
+    parts = []
     if witness.differ(runs):
         names = [name for name in responses(runs) if name != "energy_error"]
         tables = [_table(runs, analysis, name) for name in names]
         title = "Model by model"
-        found.append(Section("witness", title, _LEAD, tables=tables, figures=["witness"]))
+        parts.append(Section("witness", title, _LEAD, tables=tables, figures=["witness"]))
     if witness.separable(runs):
         title = "Where the difference comes from"
         tables = [_effects(runs, analysis)]
-        found.append(Section("parts", title, _PARTS, tables=tables, figures=["witness_parts"]))
-    return found
+        parts.append(Section("parts", title, _PARTS, tables=tables, figures=["witness_parts"]))
+    return parts
 
 
 def _table(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Table:
@@ -43,8 +43,8 @@ def _table(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Table:
     unit = display(usable(runs, name))
     sides = [witness.side(runs, analysis, name, model) for model in models]
     rows = []
-    for at, speed in enumerate(runs["velocity"].values):
-        cells = [_cell(unit, side, sides[0], at, name not in UNLIKE) for side in sides]
+    for position, speed in enumerate(runs["velocity"].values):
+        cells = [_cell(unit, side, sides[0], position, name not in UNLIKE) for side in sides]
         rows.append([Cell(f"{labels.number(float(speed))} m/s", "number"), *cells])
     caption = labels.axis(labels.response(name), unit.symbol)
     if name in UNLIKE:
@@ -52,15 +52,17 @@ def _table(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Table:
     return Table(caption, ["Impact velocity", *map(labels.beam_model, models)], rows)
 
 
-def _cell(unit: Display, side: witness.Side, against: witness.Side, at: int, alike: bool) -> Cell:
-    value = float(side.value[at])
+def _cell(
+    unit: Display, side: witness.Side, against: witness.Side, position: int, alike: bool
+) -> Cell:
+    value = float(side.value[position])
     if not np.isfinite(value):
         return Cell("missing", "warning")
     text = labels.number(float(unit(value)))
-    width = float(side.uncertainty[at])
+    width = float(side.uncertainty[position])
     if value and not width <= 1e-8 * abs(value):  # more than round-off
         text = f"{text} ± {_bound(100.0 * width / abs(value))}"
-    gap = float(witness.difference([side], [against]).value[at])
+    gap = float(witness.difference([side], [against]).value[position])
     shown = alike and side is not against and np.isfinite(gap)
     detail = f"{_signed(gap)} against the 3-D FE model" if shown else ""
     return Cell(text, "number", detail)
@@ -68,14 +70,14 @@ def _cell(unit: Display, side: witness.Side, against: witness.Side, at: int, ali
 
 def _effects(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     """Return one row per effect and one column per response."""
-    found = {name: witness.effects(runs, analysis, name) for name in witness.NAMES}
+    effects = {name: witness.effects(runs, analysis, name) for name in witness.NAMES}
     rows = []
     for key, text in witness.EFFECTS.items():
         cells = [Cell(labels.sentence(text))]
-        for side in (found[name][key] for name in witness.NAMES):
+        for side in (effects[name][key] for name in witness.NAMES):
             value, width = float(side.value), float(side.uncertainty)
-            known = Cell(f"{_signed(value)} ± {_bound(100.0 * width)}", "number")
-            cells.append(known if np.isfinite(value) else Cell("missing", "warning"))
+            cell = Cell(f"{_signed(value)} ± {_bound(100.0 * width)}", "number")
+            cells.append(cell if np.isfinite(value) else Cell("missing", "warning"))
         rows.append(cells)
     head = ["Effect", *(labels.sentence(labels.response(name)) for name in witness.NAMES)]
     return Table("Change of the answer of the paper's beam by each effect", head, rows)

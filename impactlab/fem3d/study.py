@@ -69,28 +69,28 @@ def table(
     # what a table of beams takes; the bodies are what they are in 3-D
     for name, stand_in in (TIMOSHENKO_OPTIONS | {"beam_model": BEAM_MODELS[0]}).items():
         if {"beam_model", name} & plain.keys():
-            asked = np.asarray(varied.get(name, [getattr(impact, name)]))
-            plain[name] = np.where(models == SOLID, stand_in, asked)
+            entries = np.asarray(varied.get(name, [getattr(impact, name)]))
+            plain[name] = np.where(models == SOLID, stand_in, entries)
         elif impact.beam_model == SOLID:
             impact, _ = with_values(impact, grid, {name: stand_in})
-    found: Array = require_fields(case_table(impact, grid, varied=plain, **options), SOLID_CASE)
-    solid = np.broadcast_to(models == SOLID, found.shape)
+    records: Array = require_fields(case_table(impact, grid, varied=plain, **options), SOLID_CASE)
+    solid = np.broadcast_to(models == SOLID, records.shape)
     if not solid.any():
-        return found
-    found["beam_model"][solid] = SOLID_MODEL
+        return records
+    records["beam_model"][solid] = SOLID_MODEL
     for name in _BEAM_MODELS_ONLY:
-        found[name][solid] = 0
+        records[name][solid] = 0
     for name in SIZES:
         values = varied.get(name, [getattr(grid, name)])
         if not any(value is None for value in values):
             break
     else:
         raise ValueError("Discretisation.element_size: is required for the solid model")
-    given = np.broadcast_to(positive("Discretisation", name, column(values)), solid.shape)[solid]
+    sizes = np.broadcast_to(positive("Discretisation", name, column(values)), solid.shape)[solid]
     if name == "elements_per_radius":
-        given = np.array([contact_radius(_impact_of(case)) for case in found[solid]]) / given
-    found["element_size"][solid] = given
-    return found
+        sizes = np.array([contact_radius(_impact_of(case)) for case in records[solid]]) / sizes
+    records["element_size"][solid] = sizes
+    return records
 
 
 def is_solid(cases: Array) -> Array:
@@ -106,10 +106,10 @@ def _impact_of(case: Any) -> Impact:
 
 def work(cases: Array) -> Array:
     """Return the estimated time of each run in node-steps; 0 for a run that is listed again."""
-    found = _priced(cases, cost.work, lambda run: cost.A_SECOND * run.cpu_seconds)
+    estimates = _priced(cases, cost.work, lambda run: cost.A_SECOND * run.cpu_seconds)
     _, first = np.unique(cases.view(f"V{cases.dtype.itemsize}"), return_index=True)
     once = np.zeros(cases.size)
-    once[first] = found[first]
+    once[first] = estimates[first]
     return once
 
 
@@ -129,10 +129,10 @@ def usual(case: Array, duration: float) -> Array:
 def _priced(
     cases: Array, of_beams: Callable[[Array], Array], of_solid: Callable[[Cost], float]
 ) -> Array:
-    found, solid = np.zeros(cases.size), is_solid(cases)
-    found[~solid] = of_beams(require_fields(cases[~solid], CASE))
-    found[solid] = [of_solid(_cost(case.tobytes())) for case in cases[solid]]
-    return found
+    estimates, solid = np.zeros(cases.size), is_solid(cases)
+    estimates[~solid] = of_beams(require_fields(cases[~solid], CASE))
+    estimates[solid] = [of_solid(_cost(case.tobytes())) for case in cases[solid]]
+    return estimates
 
 
 @lru_cache(maxsize=4096)
@@ -155,17 +155,18 @@ def solve_one(case: Any, samples: int) -> dict[str, Any]:
     """
     stopped = FAILURES["stopped"][0]
     answers: dict[str, Any] = {"status": stopped, "remarks": 0}
-    given, size, duration = _impact_of(case), case["element_size"].item(), case["duration"].item()
+    solid_impact = _impact_of(case)
+    size, duration = case["element_size"].item(), case["duration"].item()
     options: dict[str, Any] = {"element_size": size, "duration": duration, "samples": _STEPS}
     begun = time.thread_time()
     try:
-        patch = quarter_mesh(given, element_size=size).patch
-        while "patch_needed" in (run := solve_alone(given, patch=patch, **options)).attrs:
+        patch = quarter_mesh(solid_impact, element_size=size).patch
+        while "patch_needed" in (run := solve_alone(solid_impact, patch=patch, **options)).attrs:
             patch = 1.5 * patch
             again = "a 3-D run begins again with a patch of %.3g mm: %s"
             log.info(again, 1e3 * patch, run.attrs["stopped"])
             begun = time.thread_time()
-        taken = time.thread_time() - begun
+        seconds = time.thread_time() - begun
     except ValueError as error:  # no mesh of this size, or no larger patch
         log.warning("a 3-D run was not possible: %s", error)
         return answers
@@ -182,7 +183,7 @@ def solve_one(case: Any, samples: int) -> dict[str, Any]:
                 answers[name] = np.interp(times, run["time"].values, run[name].values)
     for name, along in (("plastic_zone_radius", 0), ("plastic_zone_depth", 2)):
         answers[name] = plastic_reach(run, along)
-    return answers | {"processor_time": taken, "status": int(run["status"])}
+    return answers | {"processor_time": seconds, "status": int(run["status"])}
 
 
 def cases(design: xr.Dataset, runs: Array) -> Array:
@@ -195,24 +196,24 @@ def cases(design: xr.Dataset, runs: Array) -> Array:
 def solve(cases: Array, form: OutputSpec) -> Columns:
     """Return the answers of the kernels and of the 3-D FE model, in the order of the cases."""
     solid = is_solid(cases)
-    found = solve_cases(require_fields(cases[~solid], CASE), samples=form.samples)
+    answers = solve_cases(require_fields(cases[~solid], CASE), samples=form.samples)
     columns = {}
-    for name, values in found.items():
+    for name, values in answers.items():
         missing = np.nan if values.dtype.kind == "f" else 0
         columns[name] = np.full((cases.size, *values.shape[1:]), missing, dtype=values.dtype)
         columns[name][~solid] = values
     columns |= {name: np.full(cases.size, np.nan) for name in VARIABLES}
-    for at in np.flatnonzero(solid):
-        for name, value in solve_one(cases[at], form.samples).items():
-            columns[name][at] = value
+    for row in np.flatnonzero(solid):
+        for name, value in solve_one(cases[row], form.samples).items():
+            columns[name][row] = value
     return columns
 
 
 def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     """Return the answers of a design's runs, in its order, with labels and provenance."""
     dims, shape = run_shape(design)
-    own = {name: (dims, answers[name].reshape(shape)) for name in VARIABLES}
-    return described(impact.labelled(design, answers).assign(own))
+    variables = {name: (dims, answers[name].reshape(shape)) for name in VARIABLES}
+    return described(impact.labelled(design, answers).assign(variables))
 
 
 SOLVER = replace(

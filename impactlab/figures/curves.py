@@ -67,7 +67,7 @@ class Plan:
     def note(self, runs: xr.Dataset) -> str:
         """Return a caption's sentences on the values that are shown and held."""
         shown = [labels.setting(runs[dim], where) for dim, where in self.shown.items()]
-        held = [labels.setting(runs[dim], [at]) for dim, at in self.held.items()]
+        held = [labels.setting(runs[dim], [position]) for dim, position in self.held.items()]
         text = f"Curves: {'; '.join(shown)}." if shown else ""
         return f"{text} Held: {'; '.join(held)}.".strip() if held else text
 
@@ -90,8 +90,8 @@ def plan(
     panels = [Choice({}, "")]
     if panel is not None and panel in dims:
         places = scales.spread(runs.sizes[panel], _MOST)
-        panels = [Choice({panel: at}, labels.value(runs[panel], at)) for at in places]
-    rank = {dim: at for at, dim in enumerate(prefer)}
+        panels = [Choice({panel: place}, labels.value(runs[panel], place)) for place in places]
+    rank = {dim: position for position, dim in enumerate(prefer)}
     left = sorted((dim for dim in dims if dim != panel), key=lambda dim: rank.get(dim, len(rank)))
     # beside a wing's runs, as no model there is refined by what refines the other
     mixed = wings.among(runs.get("beam_model", ""))
@@ -109,7 +109,7 @@ def plan(
     curves = []
     for ordinals in product(*(range(len(where)) for where in shown.values())):
         where = {dim: shown[dim][i] for dim, i in zip(shown, ordinals, strict=True)}
-        label = ", ".join(labels.value(runs[dim], at) for dim, at in where.items())
+        label = ", ".join(labels.value(runs[dim], position) for dim, position in where.items())
         colour, line = (*ordinals, *ordinals, 0, 0)[:2]
         curves.append(Choice(held | where | single, label, (colour, line)))
     return Plan(panels, curves, shown, held)
@@ -140,10 +140,10 @@ def look(curve: Choice, *, markers: bool = False) -> dict[str, Any]:
 
 def add(ax: Axes, x: Floats, y: Floats, curve: Choice, *, markers: bool = True) -> bool:
     """Draw a curve that has finite points; return whether it has."""
-    found = bool(np.isfinite(x + y).any())
-    if found:
+    finite = bool(np.isfinite(x + y).any())
+    if finite:
         ax.plot(x, y, label=curve.label or "_only", **look(curve, markers=markers))
-    return found
+    return finite
 
 
 def broken(x: Floats, y: Floats) -> tuple[Floats, Floats]:
@@ -157,11 +157,12 @@ def broken(x: Floats, y: Floats) -> tuple[Floats, Floats]:
         return x, y
     slope = rise / run
     beside = [
-        np.maximum(np.append(0.0, each[:-1]), np.append(each[1:], 0.0)) for each in (rise, slope)
+        np.maximum(np.append(0.0, changes[:-1]), np.append(changes[1:], 0.0))
+        for changes in (rise, slope)
     ]
     jumps = (rise > 0.1 * np.ptp(y)) & (rise > _JUMP * beside[0]) & (slope > _JUMP * beside[1])
-    at = np.flatnonzero(jumps) + 1
-    return np.insert(x.astype(float), at, np.nan), np.insert(y.astype(float), at, np.nan)
+    gaps = np.flatnonzero(jumps) + 1
+    return np.insert(x.astype(float), gaps, np.nan), np.insert(y.astype(float), gaps, np.nan)
 
 
 def chosen(runs: xr.Dataset, variable: str) -> Plan:
@@ -169,8 +170,8 @@ def chosen(runs: xr.Dataset, variable: str) -> Plan:
 
     Where nothing else is varied, the laws are the curves.
     """
-    others = [dim for dim in design_dims(runs, runs[variable].dims) if dim != "contact"]
-    alone = all(runs.sizes[dim] == 1 for dim in others)
+    dims = [dim for dim in design_dims(runs, runs[variable].dims) if dim != "contact"]
+    alone = all(runs.sizes[dim] == 1 for dim in dims)
     return plan(runs, variable, panel=None if alone else "contact")
 
 
@@ -229,18 +230,30 @@ def measurements(analysis: xr.Dataset, name: str, along: str) -> xr.Dataset:
     if "compared_quantity" not in analysis:
         return xr.Dataset(coords={"comparison": []})
     quantity, verdict = (analysis[f"compared_{key}"] for key in ("quantity", "verdict"))
-    own = (quantity == name) & (verdict != Agreement.OTHER_IMPACT)
-    kept = analysis[[key for key in analysis if str(key).startswith("compared_")]]
-    kept = kept.isel(comparison=np.flatnonzero(own.values))
-    stated = [json.loads(text).get(along) for text in kept["compared_conditions"].values.tolist()]
+    stating = (quantity == name) & (verdict != Agreement.OTHER_IMPACT)
+    compared = analysis[[key for key in analysis if str(key).startswith("compared_")]]
+    compared = compared.isel(comparison=np.flatnonzero(stating.values))
+    stated = [
+        json.loads(text).get(along) for text in compared["compared_conditions"].values.tolist()
+    ]
     numbers = [value if isinstance(value, int | float) else np.nan for value in stated]
     keys = [
-        (x, *(kept[f"compared_{key}"].values[at] for key in ("measured", "uncertainty", "source")))
-        for at, x in enumerate(numbers)
+        (
+            x,
+            *(
+                compared[f"compared_{key}"].values[position]
+                for key in ("measured", "uncertainty", "source")
+            ),
+        )
+        for position, x in enumerate(numbers)
     ]
-    once = [at for at, key in enumerate(keys) if key not in keys[:at] and np.isfinite(key[0])]
+    once = [
+        position
+        for position, key in enumerate(keys)
+        if key not in keys[:position] and np.isfinite(key[0])
+    ]
     once.sort(key=numbers.__getitem__)
-    return kept.isel(comparison=once).assign_coords(
+    return compared.isel(comparison=once).assign_coords(
         along=("comparison", [numbers[i] for i in once])
     )
 
@@ -249,20 +262,25 @@ def add_measured(
     ax: Axes, analysis: xr.Dataset, name: str, along: str, x: Display, y: Display
 ) -> None:
     """Draw the measurements of a response over the parameter `along`, with expanded uncertainty."""
-    found = measurements(analysis, name, along)
+    points = measurements(analysis, name, along)
     for simulated, label in _WORDS.items():
-        if not found.sizes["comparison"]:
+        if not points.sizes["comparison"]:
             return
-        here = found.isel(comparison=found["compared_simulated"].values == simulated)
-        if here.sizes["comparison"]:
-            value, bar = (here[f"compared_{key}"].values for key in ("measured", "uncertainty"))
-            ax.errorbar(x(here["along"].values), y(value), y(bar), label=label, **_MEASURED)
+        group = points.isel(comparison=points["compared_simulated"].values == simulated)
+        if group.sizes["comparison"]:
+            value, bar = (group[f"compared_{key}"].values for key in ("measured", "uncertainty"))
+            ax.errorbar(x(group["along"].values), y(value), y(bar), label=label, **_MEASURED)
 
 
 def note_measured(analysis: xr.Dataset, names: list[str], along: str) -> str:
     """Return a caption's sentence on the measurements drawn; "" without any."""
-    found = [measurements(analysis, name, along) for name in names]
-    sources = [s for one in found if one.sizes["comparison"] for s in one["compared_source"].values]
+    points = [measurements(analysis, name, along) for name in names]
+    sources = [
+        s
+        for dataset in points
+        if dataset.sizes["comparison"]
+        for s in dataset["compared_source"].values
+    ]
     if not sources:
         return ""
     listed = "; ".join(dict.fromkeys(map(str, sources)))

@@ -153,9 +153,9 @@ def percent(share: float, digits: int = 2) -> str:
     return "–" if math.isnan(share) else f"{number(100 * share, digits)} %"
 
 
-def counted(number: int, what: str) -> str:
+def counted(number: int, noun: str) -> str:
     """Return a number of things: "1 check", "1,024 checks"."""
-    return f"{number:,} {what}" if number == 1 else f"{number:,} {what}s"
+    return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
 
 
 def listing(items: Sequence[str]) -> str:
@@ -176,8 +176,8 @@ def values(coordinate: xr.DataArray, where: Iterable[int]) -> list[str]:
     """
     if coordinate.dtype.kind in "if":
         shown = np.ravel(display(coordinate)(coordinate.values))
-        return [number(float(shown[at])) for at in where]
-    return [_spelled(coordinate, str(coordinate.values.flat[at])) for at in where]
+        return [number(float(shown[position])) for position in where]
+    return [_spelled(coordinate, str(coordinate.values.flat[position])) for position in where]
 
 
 def _spelled(coordinate: xr.DataArray, word: str, *, short: bool = False) -> str:
@@ -202,9 +202,9 @@ def unit(coordinate: xr.DataArray) -> str:
     return f" {symbol}" if symbol else ""
 
 
-def value(coordinate: xr.DataArray, at: int) -> str:
+def value(coordinate: xr.DataArray, position: int) -> str:
     """Return one value with its unit, or with the name of what it counts: "5 m/s", "601 nodes"."""
-    name, text = str(coordinate.name), values(coordinate, [at])[0]
+    name, text = str(coordinate.name), values(coordinate, [position])[0]
     if name == "run":
         return f"run {text}"
     counted = name in PARAMETERS and PARAMETERS[name].is_integer

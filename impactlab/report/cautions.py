@@ -31,11 +31,11 @@ def cautions(runs: xr.Dataset) -> Iterator[str]:
                     "kept, but they are extrapolated."
                 )
     for name in access.varied(runs):
-        drawn = (
+        levels = (
             set(runs[name].values.flat) if runs[name].attrs.get("distribution") == CHOICE else ()
         )
-        for word in np.atleast_1d(runs[name].attrs["values"]) if drawn else ():
-            if word not in drawn:
+        for word in np.atleast_1d(runs[name].attrs["values"]) if levels else ():
+            if word not in levels:
                 yield (
                     f"No run draws “{word}” for the {labels.parameter(name)}, so rare is it by its "
                     "weight: what it does is in none of these numbers."
@@ -50,9 +50,9 @@ def endings(runs: xr.Dataset) -> str:
     gaps = [access.absent(runs, name) for name in responses(runs)]
     empty = xr.concat(gaps, "gap").all("gap") if gaps else access.failed(runs)
     failed, lacking = int(empty.sum()), int((access.failed(runs) & ~empty).sum())
-    told = [f"{failed:,} failed"] * bool(failed)
-    told += [f"{lacking:,} without an answer"] * bool(lacking)
-    return ", ".join(told)
+    counts = [f"{failed:,} failed"] * bool(failed)
+    counts += [f"{lacking:,} without an answer"] * bool(lacking)
+    return ", ".join(counts)
 
 
 def beside(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:

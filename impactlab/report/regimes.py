@@ -82,12 +82,12 @@ def _jumps(runs: xr.Dataset, name: str) -> Iterator[tuple[float, str]]:
     dims = design_dims(runs, array.dims)
     for dim in (dim for dim in physical(runs) if dim in dims):
         ordered = array.sortby(dim)
-        others = [other for other in dims if other != dim]
-        for place in product(*(range(ordered.sizes[other]) for other in others)):
-            where = dict(zip(others, place, strict=True))
+        across = [other for other in dims if other != dim]
+        for place in product(*(range(ordered.sizes[other]) for other in across)):
+            where = dict(zip(across, place, strict=True))
             curve = ordered.isel(where)
-            for at in jumps(curve[dim].values.astype(float), curve.values).tolist():
-                ends = curve[[at, at + 1]]
+            for position in jumps(curve[dim].values.astype(float), curve.values).tolist():
+                ends = curve[[position, position + 1]]
                 low, high = (labels.number(float(end), 3) for end in display(runs[name])(ends))
                 text = f"from {low} to {high}{unit} between "
                 text += labels.listing(labels.values(ends[dim], [0, 1])) + labels.unit(ends[dim])

@@ -60,17 +60,19 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
     exponent = 2.0 / (7.0 + np.tanh((1500.0 - runs) / 500.0))
     classes = round(min(int(np.ceil(runs**exponent)), 48))  # of a parameter's values, as in SALib
     places = np.linspace(outputs.min(), outputs.max(), GRID)
-    words = np.array([*of_words, False, *of_words[of_words]])
+    categorical = np.array([*of_words, False, *of_words[of_words]])
 
     def reduced(count: int, width: float, rows: npt.NDArray[np.int64]) -> tuple[Floats, Floats]:
         """Return delta without its bias (eq. 30), and the resamples of it."""
-        again = [deltas(inputs[at], outputs[at], count, places, width, words) for at in rows]
-        whole = deltas(inputs, outputs, count, places, width, words)
-        return 2 * whole - np.mean(again, axis=0), np.array(again)
+        again = [
+            deltas(inputs[row], outputs[row], count, places, width, categorical) for row in rows
+        ]
+        estimate = deltas(inputs, outputs, count, places, width, categorical)
+        return 2 * estimate - np.mean(again, axis=0), np.array(again)
 
-    drawn = sample.rng(response).integers(runs, size=(sample.resamples, runs))
-    values, replicates = reduced(2 * classes, WIDTH, drawn)
-    change = np.abs(values - reduced(classes, 2 * WIDTH, drawn[:COARSE])[0])
+    draws = sample.rng(response).integers(runs, size=(sample.resamples, runs))
+    values, replicates = reduced(2 * classes, WIDTH, draws)
+    change = np.abs(values - reduced(classes, 2 * WIDTH, draws[:COARSE])[0])
     margins, dummy = sample.half_width(replicates), len(of_words)
     noise = np.full(dummy, values[dummy])
     noise[of_words] = values[dummy + 1 :]
@@ -86,24 +88,24 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
 
 
 def deltas(
-    inputs: Floats, outputs: Floats, classes: int, places: Floats, width: float, words: Mask
+    inputs: Floats, outputs: Floats, classes: int, places: Floats, width: float, categorical: Mask
 ) -> Floats:
     """Return half the mean distance of the densities in classes of each parameter from that of all.
 
     inputs: (runs, parameters); outputs: (runs,); classes: their number, of equal size; width: of
-    the kernels, relative to Silverman's; words: (parameters,), where the values
+    the kernels, relative to Silverman's; categorical: (parameters,), where the values
     are the classes. NaN where a class does not vary.
     """
-    whole = _density(outputs, np.zeros(1, int), places, width)
+    density = _density(outputs, np.zeros(1, int), places, width)
     equal = _starts(len(outputs), classes)
-    found = []
-    for column, of_words in zip(inputs.T, words, strict=True):
+    distances = []
+    for column, of_words in zip(inputs.T, categorical, strict=True):
         order = np.argsort(column, kind="stable")
         starts = np.flatnonzero(np.diff(column[order], prepend=-1)) if of_words else equal
         shares = np.diff(starts, append=len(outputs)) / len(outputs)
-        apart = np.abs(_density(outputs[order], starts, places, width) - whole)
-        found.append((shares * np.trapezoid(apart, places, axis=0)).sum() / 2)
-    return np.array(found)
+        apart = np.abs(_density(outputs[order], starts, places, width) - density)
+        distances.append((shares * np.trapezoid(apart, places, axis=0)).sum() / 2)
+    return np.array(distances)
 
 
 def first_orders(inputs: Floats, outputs: Floats) -> tuple[Floats, Floats]:
@@ -140,8 +142,8 @@ def _density(
     means = np.repeat(np.add.reduceat(outputs, starts) / sizes, sizes)
     squares = np.add.reduceat((outputs - means) ** 2, starts) / np.maximum(sizes - 1, 1)
     width = relative * np.sqrt(squares) * (0.75 * sizes) ** -0.2
-    each = np.repeat(np.where(width > 0, width, np.nan), sizes)
-    kernels = np.exp(-0.5 * ((places[:, None] - outputs) / each) ** 2)
+    widths = np.repeat(np.where(width > 0, width, np.nan), sizes)
+    kernels = np.exp(-0.5 * ((places[:, None] - outputs) / widths) ** 2)
     sums = np.add.reduceat(kernels, starts, axis=1)
     return np.asarray(sums / (np.sqrt(2 * np.pi) * width * sizes))
 

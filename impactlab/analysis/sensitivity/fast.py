@@ -49,12 +49,12 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
     curves = outputs.reshape(
         len(sample.parameters) + 1, -1, outputs.size // sample.number("curves")
     )
-    number, own = curves.shape[1], sample.number("frequency")
+    number, frequency = curves.shape[1], sample.number("frequency")
     spectrum = np.abs(np.fft.rfft(curves - curves.mean(axis=-1, keepdims=True))[..., 1:]) ** 2
     variance = spectrum.sum(axis=-1)
     parts = {
-        "first_order": spectrum[..., own - 1 :: own].sum(axis=-1),
-        "total_order": spectrum[..., own // 2 :].sum(axis=-1),
+        "first_order": spectrum[..., frequency - 1 :: frequency].sum(axis=-1),
+        "total_order": spectrum[..., frequency // 2 :].sum(axis=-1),
     }
     quantile = float(scipy.stats.t.ppf(0.5 + sample.confidence / 2, number - 1))
     indices: dict[str, Floats] = {}

@@ -43,21 +43,21 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     method.check(sample)
     answers = [_answer(name, sample, method) for name in listed(runs, "responses")]
     verdicts, shares, rows = zip(*answers, strict=True)
-    wanted = {
+    indices = {
         name: index
         for name, index in method.indices.items()
         if index.dims != PAIR or sample.number("second_order")
     }
     factors, coordinates = list(sample.factors), labels(runs)
-    what = "group of varied parameters" if sample.groups else "varied parameter"
-    coordinates["parameter"] = ("parameter", factors, {"long_name": what})
-    dims = {index.dims for index in wanted.values()}
+    long_name = "group of varied parameters" if sample.groups else "varied parameter"
+    coordinates["parameter"] = ("parameter", factors, {"long_name": long_name})
+    dims = {index.dims for index in indices.values()}
     if PAIR in dims:
-        coordinates[PAIR[1]] = (PAIR[1], factors, {"long_name": f"the other {what}"})
+        coordinates[PAIR[1]] = (PAIR[1], factors, {"long_name": f"the other {long_name}"})
     if BY_SAMPLES in dims:
         attrs = {"long_name": "base samples used, the first of the sample", "units": "1"}
         coordinates[BY_SAMPLES[0]] = (BY_SAMPLES[0], sobol.base_samples(sample), attrs)
-    variables = _variables(rows, wanted, sample, coordinates)
+    variables = _variables(rows, indices, sample, coordinates)
     worst = [max(entry, default=SensitivityVerdict.USABLE) for entry in verdicts]
     codes = xr.DataArray([int(judgement) for judgement in worst], dims="response")
     supplied = {"long_name": "share of runs whose value a surrogate supplied", "units": "1"}
@@ -87,18 +87,18 @@ def _answer(
         verdicts.append(SensitivityVerdict.SEVERAL_REGIMES)
     if verdicts and max(verdicts) >= SensitivityVerdict.CONSTANT:
         return verdicts, 0.0, {}
-    found = method.estimate(complete, sample, response)
-    for name in found.keys() & {f"{index}_interval" for index in method.indices}:
+    indices = method.estimate(complete, sample, response)
+    for name in indices.keys() & {f"{index}_interval" for index in method.indices}:
         # Of an index with a unit, such as a mean effect, the largest is the scale; else 1.
         index = method.indices[name.removesuffix("_interval")]
-        scale = 1.0 if index.units else np.abs(found[name.removesuffix("_interval")]).max()
-        found[name] = found[name] + filled.half_width * scale
-    return verdicts + verdict.of_indices(found), filled.share, found
+        scale = 1.0 if index.units else np.abs(indices[name.removesuffix("_interval")]).max()
+        indices[name] = indices[name] + filled.half_width * scale
+    return verdicts + verdict.of_indices(indices), filled.share, indices
 
 
 def _variables(
     rows: Sequence[Mapping[str, Floats]],
-    wanted: Mapping[str, Index],
+    indices: Mapping[str, Index],
     sample: Sample,
     coordinates: Mapping[str, Any],
 ) -> dict[str, Any]:
@@ -107,16 +107,16 @@ def _variables(
     if "replicates" not in sample.settings:
         settings["resamples"] = sample.resamples
     variables: dict[str, Any] = {}
-    for name, index in wanted.items():
+    for name, index in indices.items():
         attrs = {"long_name": index.long_name, "estimator": index.estimator}
         attrs |= {"units": index.units} if index.units else {}
         attrs |= {"comment": index.comment} if index.comment else {}
-        words = f"{100 * sample.confidence:g} % interval of the {index.long_name}"
-        margin = attrs | {"long_name": f"half-width of the {words}"} | settings
+        interval = f"{100 * sample.confidence:g} % interval of the {index.long_name}"
+        margin = attrs | {"long_name": f"half-width of the {interval}"} | settings
         gap = np.full([len(coordinates[dim][1]) for dim in index.dims], np.nan)
-        for key, own in ((name, attrs), (f"{name}_interval", margin))[: 1 + index.interval]:
+        for key, metadata in ((name, attrs), (f"{name}_interval", margin))[: 1 + index.interval]:
             stacked = np.array([row[key] if row else gap for row in rows], float)
-            variables[key] = (("response", *index.dims), stacked, own)
+            variables[key] = (("response", *index.dims), stacked, metadata)
     return variables
 
 
@@ -129,7 +129,7 @@ COLUMNS = (*_LABELS, "index", "value", "low", "high", "units", "verdict")
 
 def sensitivity_variables(analysis: xr.Dataset) -> xr.Dataset:
     """Return the sensitivity variables of an analysis: indices, intervals and verdicts."""
-    wanted = [
+    names = [
         name
         for name, array in analysis.items()
         if name in _BESIDE
@@ -139,7 +139,7 @@ def sensitivity_variables(analysis: xr.Dataset) -> xr.Dataset:
             and ("estimator" in array.attrs or "parameter" in array.dims)
         )
     ]
-    return analysis[wanted]
+    return analysis[names]
 
 
 def table_rows(analysis: xr.Dataset) -> Iterator[dict[str, Any]]:

@@ -85,8 +85,8 @@ def counts(rows: int, resamples: int, rng: np.random.Generator) -> Iterator[Floa
     chunk = max(1, _CELLS // rows)  # the draws do not depend on it
     for start in range(0, resamples, chunk):
         number = min(chunk, resamples - start)
-        drawn = rng.integers(rows, size=(number, rows)) + rows * np.arange(number)[:, None]
-        tallied = np.bincount(drawn.ravel(), minlength=number * rows)
+        draws = rng.integers(rows, size=(number, rows)) + rows * np.arange(number)[:, None]
+        tallied = np.bincount(draws.ravel(), minlength=number * rows)
         yield tallied.reshape(number, rows).astype(float)
 
 

@@ -92,12 +92,12 @@ def levels(inputs: Floats) -> Floats:
 
     The same level may come out of a quantile with another last digit.
     """
-    found = np.empty(inputs.shape)
-    for at, column in enumerate(inputs.T):
+    numbers = np.empty(inputs.shape)
+    for parameter, column in enumerate(inputs.T):
         values, places = np.unique(column, return_inverse=True)
         apart = np.diff(values) > SAME * np.abs(values).max()
-        found[:, at] = np.concatenate([[0.0], np.cumsum(apart)])[places]
-    return found
+        numbers[:, parameter] = np.concatenate([[0.0], np.cumsum(apart)])[places]
+    return numbers
 
 
 METHOD = Method("morris", _INDICES, _check, _estimate)

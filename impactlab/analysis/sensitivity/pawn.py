@@ -43,18 +43,18 @@ def _check(sample: Sample) -> None:
 
 
 def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    words = np.array([*(name in sample.words for name in sample.parameters), False])
+    categorical = np.array([*(name in sample.words for name in sample.parameters), False])
     inputs = np.column_stack([sample.inputs, dummy_column(sample)])
     order = np.argsort(outputs, kind="stable")
     last = np.flatnonzero(np.diff(outputs[order], append=np.inf))
     members = [
         (column[:, None] == np.unique(column) if of_words else slides(column))[order]
-        for column, of_words in zip(inputs.T, words, strict=True)
+        for column, of_words in zip(inputs.T, categorical, strict=True)
     ]
 
     def indices(rows: npt.NDArray[np.int64]) -> Floats:
         """Return median and maximum with rows in the place of the outputs, (2, parameters)."""
-        pairs = zip(members, words, strict=True)
+        pairs = zip(members, categorical, strict=True)
         return np.array([_summary(column[rows], flag, last) for column, flag in pairs]).T
 
     rng, runs = sample.rng(response), len(outputs)
@@ -75,11 +75,11 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
 
 
 def _summary(
-    members: npt.NDArray[np.bool_], words: np.bool_, last: npt.NDArray[np.intp]
+    members: npt.NDArray[np.bool_], categorical: np.bool_, last: npt.NDArray[np.intp]
 ) -> tuple[float, float]:
     """Return median and maximum of the `distances` of the slides; each word counts by its runs."""
     apart = distances(members, last)
-    counted = np.repeat(apart, members.sum(axis=0)) if words else apart
+    counted = np.repeat(apart, members.sum(axis=0)) if categorical else apart
     return float(np.nanmedian(counted)), float(np.nanmax(apart))
 
 

@@ -70,8 +70,8 @@ def _regression(name: str, table: Floats, sample: Sample, response: str) -> dict
 def _coefficients(correlation: Floats) -> tuple[Floats, Floats]:
     """Return standardised coefficients (..., regressors) of the last variable, and R^2 (...)."""
     inner, outer = correlation[..., :-1, :-1], correlation[..., :-1, -1]
-    found = np.asarray(np.linalg.solve(inner, outer[..., None])[..., 0], float)
-    return found, np.asarray((found * outer).sum(axis=-1))
+    coefficients = np.asarray(np.linalg.solve(inner, outer[..., None])[..., 0], float)
+    return coefficients, np.asarray((coefficients * outer).sum(axis=-1))
 
 
 METHOD = Method("regression", _INDICES, _check, _estimate)

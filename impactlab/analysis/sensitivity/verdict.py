@@ -116,27 +116,27 @@ def tail(outputs: Floats) -> float:
     return float(squares[-max(1, round(TAIL * squares.size)) :].sum() / squares.sum())
 
 
-def of_indices(found: Mapping[str, Floats]) -> list[SensitivityVerdict]:
+def of_indices(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
     """Return the verdicts on the indices of one response; empty for the best."""
     verdicts = []
-    margins = [found[f"{name}_interval"] for name in _JUDGED if name in found]
-    if "morris_mu_star" in found:
-        margins.append(found["morris_mu_star_interval"] / found["morris_mu_star"].max())
+    margins = [indices[f"{name}_interval"] for name in _JUDGED if name in indices]
+    if "morris_mu_star" in indices:
+        margins.append(indices["morris_mu_star_interval"] / indices["morris_mu_star"].max())
     if not all((margin <= WIDE).all() for margin in margins):
         verdicts.append(SensitivityVerdict.WIDE_INTERVALS)
-    if "rank_regression" in found:
-        explained = (found["regression_r_squared"], found["rank_regression_r_squared"])
+    if "rank_regression" in indices:
+        explained = (indices["regression_r_squared"], indices["rank_regression_r_squared"])
         if max(map(float, explained)) < LINEAR:
             verdicts.append(SensitivityVerdict.NOT_LINEAR)
-    if "total_order" in found:
+    if "total_order" in indices:
         orders = ("first_order", "first_order_interval", "total_order", "total_order_interval")
-        if inconsistent(*(found[name] for name in orders)):
+        if inconsistent(*(indices[name] for name in orders)):
             verdicts.append(SensitivityVerdict.INCONSISTENT)
-    if "base_correlation" in found:
-        noise = max(float(found["base_correlation_noise"]), ROUND_OFF)
-        if abs(float(found["base_correlation"])) > noise:
+    if "base_correlation" in indices:
+        noise = max(float(indices["base_correlation_noise"]), ROUND_OFF)
+        if abs(float(indices["base_correlation"])) > noise:
             verdicts.append(SensitivityVerdict.DEPENDENT_BASES)
-    if "delta" in found and np.isnan(found["delta"]).any():
+    if "delta" in indices and np.isnan(indices["delta"]).any():
         verdicts.append(SensitivityVerdict.NO_DENSITY)
     return verdicts
 
@@ -153,7 +153,7 @@ def inconsistent(first: Floats, first_margin: Floats, total: Floats, total_margi
 
 def remarks(verdicts: Sequence[Sequence[SensitivityVerdict]]) -> xr.DataArray:
     """Return all verdicts on each response, (response,): bits of `flag_masks`, 0 for none."""
-    masks = {kind: 1 << at for at, kind in enumerate(list(SensitivityVerdict)[1:])}
+    masks = {kind: 1 << bit for bit, kind in enumerate(list(SensitivityVerdict)[1:])}
     codes = [sum(masks[kind] for kind in entry) for entry in verdicts]
     attrs = {
         "long_name": "all that is to be said of the sensitivity indices, beside the verdict",

@@ -33,13 +33,13 @@ def candidates(parameters: int, most: int, highest: int) -> Degrees:
     A set holds the terms whose degrees a_i keep to (sum a_i^q)^(1/q) <= p with q = 0.7; p is at
     most `highest`. Blatman and Sudret (2011), eq. 24.
     """
-    found = hyperbolic(parameters, 0)
+    terms = hyperbolic(parameters, 0)
     for degree in range(1, highest + 1):
         larger = hyperbolic(parameters, degree)
         if len(larger) > most:
             break
-        found = larger
-    return found
+        terms = larger
+    return terms
 
 
 @cache
@@ -50,14 +50,14 @@ def hyperbolic(parameters: int, degree: int) -> Degrees:
     rows, grown = [constant], [(constant, 0, 0.0)]
     while grown:  # each term grows from the one without its last parameter
         row, start, used = grown.pop()
-        for at in range(start, parameters):
+        for parameter in range(start, parameters):
             for part in range(1, degree + 1):
                 total = used + part**_NORM
                 if total > limit:
                     break
-                longer = (*row[:at], part, *row[at + 1 :])
+                longer = (*row[:parameter], part, *row[parameter + 1 :])
                 rows.append(longer)
-                grown.append((longer, at + 1, total))
+                grown.append((longer, parameter + 1, total))
     rows.sort(key=lambda row: (sum(row), [-part for part in row]))
     return np.array(rows, dtype=np.int64)
 
@@ -208,13 +208,13 @@ def indices(
     taking_part = ((chaos.degrees > 0).astype(int) @ belongs > 0).T  # (groups, terms)
     alone = taking_part & (taking_part.sum(axis=0) == 1)
     varying = chaos.degrees.any(axis=1)
-    whole = (chaos.coefficients[varying] ** 2).sum() or np.nan
+    variance = (chaos.coefficients[varying] ** 2).sum() or np.nan
     factor = float(scipy.stats.norm.ppf((1 + confidence) / 2))
-    found: dict[str, Floats] = {}
+    values: dict[str, Floats] = {}
     for name, members in (("first_order", alone), ("total_order", taking_part)):
-        index = members @ chaos.coefficients**2 / whole
+        index = members @ chaos.coefficients**2 / variance
         gradient = members - np.outer(index, varying)
-        scatter = 2 * gradient * chaos.coefficients / whole @ influence
+        scatter = 2 * gradient * chaos.coefficients / variance @ influence
         half_width = np.asarray(factor * np.sqrt((scatter**2).sum(axis=1)) + missed)
-        found |= {name: index, f"{name}_interval": half_width}
-    return found
+        values |= {name: index, f"{name}_interval": half_width}
+    return values

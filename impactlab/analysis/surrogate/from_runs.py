@@ -29,8 +29,8 @@ def applies(runs: xr.Dataset) -> bool:
     """Return True if the runs are a sample of independent numbers with distributions."""
     if "run" not in runs.dims or correlations(runs):
         return False
-    drawn = (runs[n].attrs if n in runs.coords else {} for n in listed(runs, "varied"))
-    return all(each.get("distribution") in ARGUMENTS for each in drawn)
+    distributions = (runs[n].attrs if n in runs.coords else {} for n in listed(runs, "varied"))
+    return all(attrs.get("distribution") in ARGUMENTS for attrs in distributions)
 
 
 @dataclass(frozen=True)
@@ -95,11 +95,11 @@ class Divided:
     def predicted(self, values: Floats, seed: int) -> Floats:
         """Return the tested runs, (tests,), each predicted by a fit to the other parts."""
         answered, parts = np.isfinite(values), self.part[self.tests]
-        found = np.empty(parts.size)
+        predictions = np.empty(parts.size)
         for part in np.unique(parts):
             chaos, _ = self.fit(values, answered & (self.part != part), seed)
-            found[parts == part] = chaos(self.inputs(self.tests[parts == part]))
-        return found
+            predictions[parts == part] = chaos(self.inputs(self.tests[parts == part]))
+        return predictions
 
 
 GOOD = (
@@ -134,8 +134,8 @@ def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[
     few = parts.sum() - parts.max() < fewest_runs(len(sample.parameters))
     if few or np.count_nonzero(tested) < _FEWEST_TESTS:
         return SurrogateVerdict.TOO_FEW_RUNS, {}
-    known = values if answered.all() else values[answered]
-    if np.ptp(known) <= ROUND_OFF * max(known.max(), -known.min()):
+    present = values if answered.all() else values[answered]
+    if np.ptp(present) <= ROUND_OFF * max(present.max(), -present.min()):
         return SurrogateVerdict.CONSTANT, {}
     seed = int(sample.rng("surrogate fit").integers(2**31))
     predicted = divided.predicted(values, seed)
@@ -148,19 +148,19 @@ def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[
     inputs, block = divided.inputs(rows), rows // divided.length
     pull = influence(chaos, inputs, values[rows], block, rmse)
     missed = min(max(1 - q2, 0.0), 1.0)
-    found = {"chaos": chaos, "q2": q2, "q2_low": low, "rmse": rmse, "runs": rows.size}
-    found |= ErrorModel.of(leverage(chaos, divided.inputs(tests)), errors).variables()
-    found["held_out"] = predicted
+    properties = {"chaos": chaos, "q2": q2, "q2_low": low, "rmse": rmse, "runs": rows.size}
+    properties |= ErrorModel.of(leverage(chaos, divided.inputs(tests)), errors).variables()
+    properties["held_out"] = predicted
     if not (regimes := of_sample(sample, values).size):
-        found |= indices(chaos, sample.memberships, pull, missed, sample.confidence)
-    levels, most = distinct(known)
-    if known.size < values.size:
-        return SurrogateVerdict.FAILED_RUNS, found
-    if most >= MOSTLY * known.size:
-        return SurrogateVerdict.MOSTLY_CONSTANT, found
-    if levels <= min(FEW, known.size // 10) or regimes:
-        return SurrogateVerdict.JUMPS, found
-    return SurrogateVerdict.USABLE if low >= GOOD else SurrogateVerdict.POOR, found
+        properties |= indices(chaos, sample.memberships, pull, missed, sample.confidence)
+    levels, most = distinct(present)
+    if present.size < values.size:
+        return SurrogateVerdict.FAILED_RUNS, properties
+    if most >= MOSTLY * present.size:
+        return SurrogateVerdict.MOSTLY_CONSTANT, properties
+    if levels <= min(FEW, present.size // 10) or regimes:
+        return SurrogateVerdict.JUMPS, properties
+    return SurrogateVerdict.USABLE if low >= GOOD else SurrogateVerdict.POOR, properties
 
 
 def analysis(runs: xr.Dataset) -> xr.Dataset:
@@ -176,33 +176,37 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     with threadpool_limits(limits=1):  # the same bits on any number of processors
         answers = [surrogate(usable(sample.runs, name).values[0], divided) for name in names]
     terms = [np.zeros((1, len(sample.parameters)), dtype=np.int64)]
-    terms += [found["chaos"].degrees for _, found in answers if found]
+    terms += [properties["chaos"].degrees for _, properties in answers if properties]
     degrees = np.unique(np.concatenate(terms), axis=0)
-    for found in (found for _, found in answers if found):
-        at = (degrees[:, np.newaxis] == found["chaos"].degrees).all(axis=-1).argmax(axis=0)
-        found["coefficient"] = np.zeros(len(degrees))
-        found["coefficient"][at] = found["chaos"].coefficients
+    for properties in (properties for _, properties in answers if properties):
+        positions = (
+            (degrees[:, np.newaxis] == properties["chaos"].degrees).all(axis=-1).argmax(axis=0)
+        )
+        properties["coefficient"] = np.zeros(len(degrees))
+        properties["coefficient"][positions] = properties["chaos"].coefficients
     coordinates = labels(runs)
-    for name, entries, words in (
+    for name, entries, long_name in (
         ("held_out", sample.runs["run"].values[divided.tests], "number of a run left out once"),
         ("parameter", sample.factors, "varied parameter"),
         ("surrogate_input", sample.parameters, "parameter that the surrogate depends on"),
     ):
-        coordinates[name] = (name, np.asarray(entries), {"long_name": words})
+        coordinates[name] = (name, np.asarray(entries), {"long_name": long_name})
     sizes = {"held_out": divided.tests.size, "parameter": len(sample.factors)}
     sizes["surrogate_term"] = len(degrees)
     variables: dict[str, Any] = {}
-    for name, (dims, words, units) in _NUMBERS.items():
+    for name, (dims, long_name, units) in _NUMBERS.items():
         gap = 0 if name == "runs" else np.full([sizes[dim] for dim in dims], np.nan)
-        rows = [found.get(name, gap) for _, found in answers]
-        attrs: dict[str, Any] = {"long_name": words.format(100 * sample.confidence)}
+        rows = [properties.get(name, gap) for _, properties in answers]
+        attrs: dict[str, Any] = {"long_name": long_name.format(100 * sample.confidence)}
         attrs |= {"units": units} if units else {}
         attrs |= {"estimator": "polynomial chaos"} if dims == ("parameter",) else {}
         attrs |= {"confidence": sample.confidence} if name.endswith("_interval") else {}
         variables[f"surrogate_{name}"] = (("response", *dims), np.array(rows), attrs)
-    words = "degree of each term's polynomial in each parameter, orthonormal for its distribution"
+    long_name = (
+        "degree of each term's polynomial in each parameter, orthonormal for its distribution"
+    )
     term_dims = ("surrogate_term", "surrogate_input")
-    variables["surrogate_degree"] = (term_dims, degrees, {"long_name": words, "units": "1"})
+    variables["surrogate_degree"] = (term_dims, degrees, {"long_name": long_name, "units": "1"})
     codes = xr.DataArray([int(verdict) for verdict, _ in answers], dims="response")
     variables["surrogate_verdict"] = flagged(codes, SurrogateVerdict, "verdict on the surrogate")
     return xr.Dataset(variables, coordinates)

@@ -47,12 +47,12 @@ class Polynomials:
 
     def __call__(self, standardised: Floats, highest: int) -> Floats:
         """Return the polynomials of degree 0 to `highest`, (degrees, points)."""
-        found = np.ones((highest + 1, standardised.size))
+        polynomials = np.ones((highest + 1, standardised.size))
         below = np.zeros(standardised.size)
         for n in range(highest):
-            raised = (standardised - self.diagonal[n]) * found[n] - self.beside[n] * below
-            below, found[n + 1] = found[n], raised / self.beside[n + 1]
-        return found
+            raised = (standardised - self.diagonal[n]) * polynomials[n] - self.beside[n] * below
+            below, polynomials[n + 1] = polynomials[n], raised / self.beside[n + 1]
+        return polynomials
 
 
 def orthonormal(distribution: Mapping[str, Any]) -> Polynomials:

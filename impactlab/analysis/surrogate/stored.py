@@ -47,7 +47,7 @@ class Surrogate:
         self.parameters: tuple[str, ...] = tuple(map(str, dataset["parameter"].values))
         self.responses: tuple[str, ...] = tuple(map(str, dataset["response"].values))
         self._distributions = [json.loads(text) for text in dataset["distribution"].values]
-        self._polynomials = [orthonormal(each) for each in self._distributions]
+        self._polynomials = [orthonormal(distribution) for distribution in self._distributions]
         self._study = repr(dataset.attrs.get("study", "?"))
         self._takes = f"the surrogate takes {', '.join(self.parameters)}"
 
@@ -103,27 +103,32 @@ class Surrogate:
         if absent := [name for name in self.parameters if name not in values]:
             raise ValueError(f"{', '.join(absent)}: no value is given; {self._takes}")
         arrays = [self._checked(name, values[name]) for name in self.parameters]
-        columns = [one.drop_vars(self.parameters, errors="ignore") for one in xr.broadcast(*arrays)]
+        columns = [
+            array.drop_vars(self.parameters, errors="ignore") for array in xr.broadcast(*arrays)
+        ]
         inputs = np.column_stack([column.values.ravel() for column in columns])
         answers, leverages, errors = self._evaluated(inputs)
         variables = {}
-        for at, name in enumerate(self.responses):
+        for position, name in enumerate(self.responses):
             entry = self.dataset.sel(response=name)
             verdict = names(SurrogateVerdict)[int(entry["verdict"])]
-            if verdict == "usable" and (leverages[at] > float(entry["reach"])).any():
+            if verdict == "usable" and (leverages[position] > float(entry["reach"])).any():
                 verdict = "extrapolated"
-            elif verdict == "usable" and (errors[at] > IMPRECISE * np.abs(answers[at])).any():
+            elif (
+                verdict == "usable"
+                and (errors[position] > IMPRECISE * np.abs(answers[position])).any()
+            ):
                 verdict = "imprecise"
             attrs = {
                 "long_name": str(entry["response_long_name"].item()),
                 "units": str(entry["response_units"].item()),
                 "rmse": float(entry["rmse"]),
-                "error": float(errors[at].max(initial=0.0)),
-                "leverage": float(leverages[at].max(initial=0.0)),
+                "error": float(errors[position].max(initial=0.0)),
+                "leverage": float(leverages[position].max(initial=0.0)),
                 "q2": float(entry["q2"]),
                 "verdict": verdict,
             }
-            variables[name] = (columns[0].dims, answers[at].reshape(columns[0].shape), attrs)
+            variables[name] = (columns[0].dims, answers[position].reshape(columns[0].shape), attrs)
         return xr.Dataset(variables, dict(zip(self.parameters, columns, strict=True)))
 
     def at(self, unit: Floats) -> Floats:
@@ -189,8 +194,8 @@ class Surrogate:
         dict
             Name and arguments of the distribution, in SI units.
         """
-        found: dict[str, Any] = self._distributions[self.parameters.index(parameter)]
-        return found
+        distribution: dict[str, Any] = self._distributions[self.parameters.index(parameter)]
+        return distribution
 
     def probability(self, parameter: str, value: float) -> float:
         """Return the probability of smaller values.
@@ -218,8 +223,10 @@ class Surrogate:
     def _check_known(self, name: str) -> None:
         if name not in self.parameters:
             held = self.dataset.coords.get(name)
-            words = "" if held is None else f" (it is {held.item()!r} in all of its runs)"
-            raise ValueError(f"{name}: was not varied in study {self._study}{words}; {self._takes}")
+            remark = "" if held is None else f" (it is {held.item()!r} in all of its runs)"
+            raise ValueError(
+                f"{name}: was not varied in study {self._study}{remark}; {self._takes}"
+            )
 
     def _checked(self, name: str, value: Any) -> xr.DataArray:
         """Return a parameter's values as floats. Raises ValueError where it cannot take one."""
@@ -234,10 +241,10 @@ class Surrogate:
             )
         entry = self.dataset.sel(parameter=name)
         low, high = float(entry["lowest"]), float(entry["highest"])
-        found = np.asarray(array)
-        outside = ~((found >= low) & (found <= high))
+        numbers = np.asarray(array)
+        outside = ~((numbers >= low) & (numbers <= high))
         if outside.any():
-            worst = float(found[outside][0])
+            worst = float(numbers[outside][0])
             raise ValueError(
                 f"{name} = {worst!r}: outside {low!r} to {high!r} ({self.units(name)}), where the "
                 f"surrogate of study {self._study} was trained: choose a value within, or "
@@ -261,17 +268,23 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
         return None
     if "surrogate_error" not in analysis:
         raise ValueError(_EARLIER.format("the analysis"))
-    kept = ("coefficient", "degree", "verdict", "q2", "q2_low", "rmse", "error", "error_growth")
-    renamed = {f"surrogate_{name}": name for name in (*kept, "reach", "runs")}
+    fields = ("coefficient", "degree", "verdict", "q2", "q2_low", "rmse", "error", "error_growth")
+    renamed = {f"surrogate_{name}": name for name in (*fields, "reach", "runs")}
     dataset = analysis[list(renamed)].drop_vars("parameter", errors="ignore")
     dataset = dataset.rename(renamed | {"surrogate_term": "term", "surrogate_input": "parameter"})
     columns = [runs[str(name)] for name in dataset["parameter"].values]
-    given = [arguments(column.attrs) for column in columns]
-    pairs = list(zip(given, columns, strict=True))
-    lowest = [known["low"] if "low" in known else float(each.min()) for known, each in pairs]
-    highest = [known["high"] if "high" in known else float(each.max()) for known, each in pairs]
+    distributions = [arguments(column.attrs) for column in columns]
+    pairs = list(zip(distributions, columns, strict=True))
+    lowest = [
+        distribution["low"] if "low" in distribution else float(column.min())
+        for distribution, column in pairs
+    ]
+    highest = [
+        distribution["high"] if "high" in distribution else float(column.max())
+        for distribution, column in pairs
+    ]
     inputs = {
-        "distribution": ([json.dumps(known) for known in given], {}),
+        "distribution": ([json.dumps(distribution) for distribution in distributions], {}),
         "parameter_units": ([column.attrs.get("units", "1") for column in columns], {}),
         "parameter_long_name": ([column.attrs.get("long_name", "") for column in columns], {}),
         "lowest": (lowest, {"long_name": "lowest value trained on, SI"}),

@@ -78,10 +78,10 @@ class ErrorModel:
         mean = np.maximum(scaled.mean(axis=1), np.finfo(float).tiny)
         likelihood = -(_GROWTHS * np.log(outward).sum() + errors.size * np.log(mean)) / 2
         threshold = likelihood.max() - scipy.stats.chi2.ppf(LEVEL, 1) / 2
-        at = int(np.flatnonzero(likelihood >= threshold)[-1])
-        ranked = np.sort(np.sqrt(scaled[at]))
+        largest = int(np.flatnonzero(likelihood >= threshold)[-1])
+        ranked = np.sort(np.sqrt(scaled[largest]))
         rank = min(int(np.ceil(LEVEL * (errors.size + 1))), errors.size)
-        return cls(float(ranked[rank - 1]), float(_GROWTHS[at]), float(leverages.max()))
+        return cls(float(ranked[rank - 1]), float(_GROWTHS[largest]), float(leverages.max()))
 
     def variables(self) -> dict[str, Any]:
         """Return the fields by their names in an analysis."""

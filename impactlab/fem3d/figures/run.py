@@ -40,13 +40,13 @@ def faces(solid: xr.Dataset, axis: int) -> tuple[Floats, NDArray[np.int64]]:
 
 def _draw_faces(ax: Axes, polygons: Floats, across: str = "height", **looks: Any) -> PolyCollection:
     """Draw polygons on axes of equal scale in mm; the caller sets the limits."""
-    drawn = PolyCollection(list(polygons), **looks)
-    ax.add_collection(drawn)
+    collection = PolyCollection(list(polygons), **looks)
+    ax.add_collection(collection)
     ax.set_aspect("equal")
     ax.grid(visible=False)
     ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis(across, "mm"))
     scales.linear(ax, "xy")
-    return drawn
+    return collection
 
 
 _COLOURS = {"beam": "#DCE9F2", "sphere": "#F7E3D4", "fully integrated": "#9CC4DD"}
@@ -179,15 +179,15 @@ def histories(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
         time, unit = display(solid["time"]), display(solid[name])
         times = time(solid["time"])
         ax.plot(times, unit(solid[name]), label="3-D", color="black", linewidth=1.8, zorder=2)
-        for at, values in enumerate(beams[name].transpose("beam_model", ...)):
+        for position, values in enumerate(beams[name].transpose("beam_model", ...)):
             if np.isfinite(values).any():
                 ax.plot(
                     time(beams["time"]),
                     unit(values),
-                    label=labels.values(beams["beam_model"], [at])[0],
+                    label=labels.values(beams["beam_model"], [position])[0],
                     zorder=3,
-                    color=style.COLOURS[at],
-                    linestyle=style.LINES[at],
+                    color=style.COLOURS[position],
+                    linestyle=style.LINES[position],
                 )
         scales.linear(ax, "x", ticks=4)
         scales.linear(ax, "y")
@@ -205,4 +205,4 @@ def draw_witness(solid: xr.Dataset, beams: xr.Dataset, folder: Path, study: str)
     `beam_model`.
     """
     figures = (mesh, plastic_strain, histories)
-    return draw([(each, (solid, beams)) for each in figures], folder, study)
+    return draw([(figure, (solid, beams)) for figure in figures], folder, study)

@@ -52,27 +52,29 @@ def models(runs: xr.Dataset) -> list[str]:
 
 def finest(runs: xr.Dataset) -> dict[str, int]:
     """Return the index of the finest grid, by dimension."""
-    return {dim: int(at(runs[dim].values)) for dim, at in AXES.items() if dim in runs.dims}
+    return {
+        dim: int(finest_of(runs[dim].values)) for dim, finest_of in AXES.items() if dim in runs.dims
+    }
 
 
 def side(runs: xr.Dataset, analysis: xr.Dataset, name: str, model: str) -> Side:
     """Return a response of one model against the velocity, in the order of the runs."""
     values = usable(runs, name).sel(beam_model=model).isel(finest(runs), missing_dims="ignore")
-    found = values.values.astype(float)
+    response = values.values.astype(float)
     variable = f"{'element_size' if model == SOLID else 'nodes'}_uncertainty"
     if variable not in analysis or not known(analysis, name):
-        return Side(found, np.full(found.shape, np.nan))
+        return Side(response, np.full(response.shape, np.nan))
     share = analysis[variable].sel(response=name, beam_model=model)
     share = share.isel(dict.fromkeys(AXES, 0), missing_dims="ignore")
-    return Side(found, abs(found) * share.values.astype(float))
+    return Side(response, abs(response) * share.values.astype(float))
 
 
 def difference(over: list[Side], under: list[Side]) -> Side:
     """Return product over product, minus one, with the uncertainties of all; NaN over 0."""
-    below = np.prod([each.value for each in under], axis=0)
+    below = np.prod([entry.value for entry in under], axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.prod([each.value for each in over], axis=0) / np.where(below, below, np.nan)
-        share = sum(abs(each.uncertainty / each.value) for each in (*over, *under))
+        ratio = np.prod([entry.value for entry in over], axis=0) / np.where(below, below, np.nan)
+        share = sum(abs(entry.uncertainty / entry.value) for entry in (*over, *under))
     return Side(ratio - 1.0, abs(ratio) * share)
 
 
@@ -94,8 +96,8 @@ def separable(runs: xr.Dataset) -> bool:
     if "beam_model" not in runs.dims or runs.sizes.get(_YIELD, 0) != 2:
         return False
     rest = set(runs.dims) - {"time", "beam_model", _YIELD, *AXES}
-    wanted = {EULER, TIMOSHENKO, SOLID} <= set(runs["beam_model"].values.tolist())
-    return wanted and not rest and all(name in runs for name in NAMES)
+    complete = {EULER, TIMOSHENKO, SOLID} <= set(runs["beam_model"].values.tolist())
+    return complete and not rest and all(name in runs for name in NAMES)
 
 
 def effects(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> dict[str, Side]:
@@ -109,7 +111,8 @@ def effects(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> dict[str, Side
     soft, hard = np.argsort(runs[_YIELD].values)
     curves = [side(runs, analysis, name, model) for model in (EULER, TIMOSHENKO, SOLID)]
     (e, _), (t, te), (s, se) = (
-        [Side(curve.value[at], curve.uncertainty[at]) for at in (soft, hard)] for curve in curves
+        [Side(curve.value[index], curve.uncertainty[index]) for index in (soft, hard)]
+        for curve in curves
     )
     return {
         "shear": difference([t], [e]),
@@ -142,8 +145,8 @@ def witness(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw one column per response: values above, differences from the 3-D FE model below."""
     names = _drawn(runs)
     figure, axes = style.panels(2 * len(names), columns=len(names), height=52)
-    for at, name in enumerate(names):
-        above, below = axes[at], axes[at + len(names)]
+    for column, name in enumerate(names):
+        above, below = axes[column], axes[column + len(names)]
         _values(above, runs, analysis, name)
         _differences(below, runs, analysis, name)
         for ax in (above, below):
@@ -160,18 +163,21 @@ def _drawn(runs: xr.Dataset) -> list[str]:
     return [name for name in _SHOWN if name in access.responses(runs)][:_MOST]
 
 
-def _look(at: int, model: str) -> dict[str, Any]:
+def _look(position: int, model: str) -> dict[str, Any]:
     """Return label and style: 3-D black, others as in all figures, one marker each."""
-    look = {"color": style.COLOURS[at - 1] if at else "black", "label": labels.beam_model(model)}
-    return look | {"marker": style.MARKERS[at], "linestyle": style.LINES[at]}
+    look = {
+        "color": style.COLOURS[position - 1] if position else "black",
+        "label": labels.beam_model(model),
+    }
+    return look | {"marker": style.MARKERS[position], "linestyle": style.LINES[position]}
 
 
 def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
     unit = display(usable(runs, name))
-    for at, model in enumerate(models(runs)):
+    for position, model in enumerate(models(runs)):
         values = unit(side(runs, analysis, name, model).value)
         if np.isfinite(values).any():
-            ax.plot(runs["velocity"].values, values, **_look(at, model))
+            ax.plot(runs["velocity"].values, values, **_look(position, model))
     ax.set_title(labels.sentence(labels.response(name)), loc="left")
     ax.set_ylabel(labels.axis(labels.response(name), unit.symbol))
     if not ax.lines:
@@ -183,17 +189,18 @@ def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None
 
 
 def _differences(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None:
-    first, *others = models(runs)
+    first, *beams = models(runs)
     against = side(runs, analysis, name, first)
     speeds = runs["velocity"].values
     ends: list[float] = []
-    for at, model in enumerate(others, 1):
+    for position, model in enumerate(beams, 1):
         gap = difference([side(runs, analysis, name, model)], [against])
         bars = np.where(np.isfinite(gap.uncertainty), 100.0 * gap.uncertainty, np.nan)
-        points = 2.2 * (at - 0.5 * (len(others) + 1))  # beside its velocity, in the picture alone
+        # beside its velocity, in the picture alone
+        points = 2.2 * (position - 0.5 * (len(beams) + 1))
         shift = ScaledTranslation(points / 72.0, 0.0, ax.figure.dpi_scale_trans)
         if np.isfinite(gap.value).any():
-            look = _look(at, model) | {"elinewidth": 0.8, "transform": ax.transData + shift}
+            look = _look(position, model) | {"elinewidth": 0.8, "transform": ax.transData + shift}
             ax.errorbar(speeds, 100.0 * gap.value, yerr=bars, **look)
             reach = np.nan_to_num(bars)
             ends += [*(100.0 * gap.value - reach), *(100.0 * gap.value + reach)]
@@ -238,20 +245,20 @@ def _curves(ax: Axes, runs: xr.Dataset) -> None:
     chosen = xr.Dataset({name: usable(runs, name) for name in _HISTORIES}).isel(finest(runs))
     force, depth = (display(runs[name]) for name in _HISTORIES)
     softest = float(runs["beam_yield_stress"].min())
-    for at, (model, label) in enumerate(_LABELS.items()):
+    for position, (model, label) in enumerate(_LABELS.items()):
         for stress in np.sort(runs["beam_yield_stress"].values):
             run = chosen.sel(beam_model=model, beam_yield_stress=stress)
             pushed = np.flatnonzero(run["contact_force"].values > 0.0)
             if not pushed.size:
                 continue
             first = slice(0, int(pushed[-1]) + 2)
-            what = "yielding" if stress == softest else "elastic"
+            behaviour = "yielding" if stress == softest else "elastic"
             ax.plot(
                 depth(run["indentation"].values[first]),
                 force(run["contact_force"].values[first]),
-                color=style.COLOURS[0] if at == 0 else "black",
+                color=style.COLOURS[0] if position == 0 else "black",
                 linestyle=style.LINES[0 if stress == softest else 1],
-                label=f"{label}, {what}",
+                label=f"{label}, {behaviour}",
             )
     if not ax.lines:
         style.remark(ax, "no finite values")
@@ -261,18 +268,18 @@ def _curves(ax: Axes, runs: xr.Dataset) -> None:
 
 
 def _effects(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset) -> None:
-    for at, name in enumerate(NAMES):
-        found = effects(runs, analysis, name).values()
-        shares, widths = np.array(list(found), dtype=float).T
-        there = np.flatnonzero(np.isfinite(shares))
+    for position, name in enumerate(NAMES):
+        sides = effects(runs, analysis, name).values()
+        shares, widths = np.array(list(sides), dtype=float).T
+        places = np.flatnonzero(np.isfinite(shares))
         bars = np.where(np.isfinite(widths), widths, np.nan)
         ax.errorbar(
-            100.0 * shares[there],
-            there + 0.24 * (at - 0.5),
-            xerr=100.0 * bars[there],
+            100.0 * shares[places],
+            places + 0.24 * (position - 0.5),
+            xerr=100.0 * bars[places],
             linestyle="",
-            color=style.COLOURS[1 + at],
-            marker=style.MARKERS[1 + at],
+            color=style.COLOURS[1 + position],
+            marker=style.MARKERS[1 + position],
             label=labels.response(name),
         )
     ax.axvline(0.0, label="_guide", **style.GUIDE)
@@ -286,7 +293,9 @@ def _finding(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     """Return the shares as sentences; EFFECTS ends with all together."""
     sentences = []
     for name in NAMES:
-        shares = [float(each.value) for each in effects(runs, analysis, name).values()]
+        shares = [
+            float(effect_side.value) for effect_side in effects(runs, analysis, name).values()
+        ]
         if np.isfinite(shares).all():
             *parts, total = (f"{labels.number(100.0 * share, 2)} %" for share in shares)
             pairs = zip(parts, EFFECTS.values(), strict=False)

@@ -136,13 +136,13 @@ def _answer_full(
         xi = _ROOT * (2 * (corner & 1) - 1)
         eta = _ROOT * ((corner & 2) - 1)
         zeta = _ROOT * ((corner >> 1 & 2) - 1)
-        at, yielding = (xi, eta, zeta), 0
+        place, yielding = (xi, eta, zeta), 0
         if hardens:
             for lane in range(W):
-                yielding += _point(s, state, past, corner, lane, at, dt, metal, True)
+                yielding += _point(s, state, past, corner, lane, place, dt, metal, True)
         else:
             for lane in range(W):
-                yielding += _point(s, state, past, corner, lane, at, dt, metal, False)
+                yielding += _point(s, state, past, corner, lane, place, dt, metal, False)
         _yield(s, past, corner, yielding)
     for lane in range(W):
         nodal(s, lane, _load(s, _T, lane))
@@ -215,8 +215,8 @@ def _raise(s: Array, lane: int, dp: float, along: float) -> int:
 @inlined
 def _row(stress: Vector, g: Four, Q: Four, axis: int, share: float) -> Vector:
     """Return a row of the stress, minus the hourglass forces' part in the mean gradient."""
-    taken = combine((g[0], g[1], g[2]), (Q[0][axis], Q[1][axis], Q[2][axis]))
-    return plus(stress, -share, plus(taken, Q[3][axis], g[3]))
+    product = combine((g[0], g[1], g[2]), (Q[0][axis], Q[1][axis], Q[2][axis]))
+    return plus(stress, -share, plus(product, Q[3][axis], g[3]))
 
 
 @inlined
@@ -236,11 +236,11 @@ def hourglass(
     q1, q2 = _rate(e, c[3], w[3], L), _rate(e, c[4], w[4], L)
     q3, q4 = _rate(e, c[5], w[5], L), _rate(e, c[6], w[6], L)
     p1, p2, p3, p4 = _stiffness((q1, q2, q3, q4), half, V * dt, metal)
-    Q1, one = _raised(state, row, lane, p1, q1)
-    Q2, two = _raised(state, row + 3, lane, p2, q2)
-    Q3, three = _raised(state, row + 6, lane, p3, q3)
-    Q4, four = _raised(state, row + 9, lane, p4, q4)
-    work = dt * ((one + two) + (three + four))
+    Q1, power1 = _raised(state, row, lane, p1, q1)
+    Q2, power2 = _raised(state, row + 3, lane, p2, q2)
+    Q3, power3 = _raised(state, row + 6, lane, p3, q3)
+    Q4, power4 = _raised(state, row + 9, lane, p4, q4)
+    work = dt * ((power1 + power2) + (power3 + power4))
     return (combine(e, Q1), combine(e, Q2), combine(e, Q3), combine(e, Q4)), work
 
 
@@ -272,9 +272,9 @@ def _stiffness(q: Four, half: Vector, V: float, metal: Metal) -> Four:
 
 
 @inlined
-def _pair(plate: float, nu: float, one: float, other: float) -> tuple[float, float]:
+def _pair(plate: float, nu: float, first: float, second: float) -> tuple[float, float]:
     """Return stresses of two normal strains that vary alike, the third direction free of stress."""
-    return plate * (one + nu * other), plate * (other + nu * one)
+    return plate * (first + nu * second), plate * (second + nu * first)
 
 
 @inlined
@@ -311,7 +311,7 @@ def _point(
     past: Array,
     point: int,
     lane: int,
-    at: Vector,
+    place: Vector,
     dt: float,
     metal: Metal,
     hardens: bool,
@@ -320,8 +320,8 @@ def _point(
 
     Returns whether it yields.
     """
-    xi, eta, zeta = at
-    r, v = _slopes(_load(s, _C, lane), at), _slopes(_load(s, _W, lane), at)
+    xi, eta, zeta = place
+    r, v = _slopes(_load(s, _C, lane), place), _slopes(_load(s, _W, lane), place)
     C = (cross(r[1], r[2]), cross(r[2], r[0]), cross(r[0], r[1]))  # cofactors of dx/dxi
     size = dot(r[0], C[0])
     share = 1.0 / size
@@ -353,9 +353,9 @@ def _point(
 
 
 @inlined
-def _slopes(c: Shape, at: Vector) -> Tensor:
+def _slopes(c: Shape, place: Vector) -> Tensor:
     """Return derivatives by xi, eta and zeta, at a point."""
-    xi, eta, zeta = at
+    xi, eta, zeta = place
     c1, c2, c3, g1, g2, g3, g4 = c
     return (
         plus(plus(plus(c1, zeta, g2), eta, g3), eta * zeta, g4),

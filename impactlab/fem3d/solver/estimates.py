@@ -38,8 +38,8 @@ def contact_radius(impact: Impact) -> float:
     a^4 = 2 R m v^2/(pi p), p = 2.8 (Tabor) of the softer body's yield stress. A beam gives way and
     stays below the larger one.
     """
-    mass, velocity, _, radius = given = hertz.arguments(impact)
-    depth = hertz.maximum_indentation(*given)
+    mass, velocity, _, radius = values = hertz.arguments(impact)
+    depth = hertz.maximum_indentation(*values)
     pressure = 2.8 * min(impact.sphere.material.yield_stress, impact.beam.material.yield_stress)
     plastic = math.pow(2.0 * radius * mass * velocity**2 / (math.pi * pressure), 0.25)
     return max(math.sqrt(radius * depth), plastic)
@@ -104,7 +104,7 @@ def estimate(mesh: Mesh, impact: Impact, *, duration: float) -> Cost:
     """
     points = mesh.nodes[mesh.elements]
     ends = ((0, 1), (0, 3), (0, 4), (6, 2), (6, 5), (6, 7))
-    edges = [np.linalg.norm(points[:, one] - points[:, other], axis=1) for one, other in ends]
+    edges = [np.linalg.norm(points[:, start] - points[:, end], axis=1) for start, end in ends]
     shortest = np.min(edges, axis=0)
     stable = []
     for body, (steel, density) in enumerate(_metals(impact)):

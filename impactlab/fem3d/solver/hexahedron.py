@@ -58,15 +58,15 @@ Tensor = tuple[Vector, Vector, Vector]
 @inlined
 def load(s: Array, row: int, lane: int) -> Vector:
     """Return the numbers in three rows from `row` on."""
-    at = row * W + lane
-    return (s[at], s[at + W], s[at + 2 * W])
+    first = row * W + lane
+    return (s[first], s[first + W], s[first + 2 * W])
 
 
 @inlined
 def store(s: Array, row: int, lane: int, a: Vector) -> None:
     """Store numbers in three rows from `row` on."""
-    at = row * W + lane
-    s[at], s[at + W], s[at + 2 * W] = a[0], a[1], a[2]
+    first = row * W + lane
+    s[first], s[first + W], s[first + 2 * W] = a[0], a[1], a[2]
 
 
 @inlined
@@ -118,9 +118,9 @@ Shape = tuple[Vector, Vector, Vector, Vector, Vector, Vector, Vector]
 @inlined
 def modes(s: Array, row: int, lane: int) -> Modes:
     """Return c_1, c_2, c_3, g_1, g_2, g_3, g_4 of the values in rows row, row + 3, ... row + 21."""
-    at = row * W + lane
-    a0, a1, a2, a3 = s[at], s[at + 3 * W], s[at + 6 * W], s[at + 9 * W]
-    a4, a5, a6, a7 = s[at + 12 * W], s[at + 15 * W], s[at + 18 * W], s[at + 21 * W]
+    first = row * W + lane
+    a0, a1, a2, a3 = s[first], s[first + 3 * W], s[first + 6 * W], s[first + 9 * W]
+    a4, a5, a6, a7 = s[first + 12 * W], s[first + 15 * W], s[first + 18 * W], s[first + 21 * W]
     s01, s23, s45, s67 = a1 + a0, a2 + a3, a5 + a4, a6 + a7
     d01, d23, d45, d67 = a1 - a0, a2 - a3, a5 - a4, a6 - a7
     return (
@@ -152,16 +152,16 @@ def shape(s: Array, row: int, lane: int) -> Shape:
 @inlined
 def put(s: Array, row: int, lane: int, F: Modes) -> None:
     """Store nodal values of the modes' factors (an eighth included) in rows row, row + 3, ..."""
-    at = row * W + lane
+    first = row * W + lane
     low, high = F[1] - F[3], F[1] + F[3]  # of eta, where zeta is -1 and 1
-    one, two = -low - F[2], low - F[2]
-    three, four = F[2] - high, F[2] + high
+    sum1, sum2 = -low - F[2], low - F[2]
+    sum3, sum4 = F[2] - high, F[2] + high
     d_low, d_high = F[0] - F[4], F[0] + F[4]
     e_low, e_high = F[5] - F[6], F[5] + F[6]
-    s[at], s[at + 3 * W] = one - (d_low - e_low), one + (d_low - e_low)
-    s[at + 6 * W], s[at + 9 * W] = two + (d_low + e_low), two - (d_low + e_low)
-    s[at + 12 * W], s[at + 15 * W] = three - (d_high - e_high), three + (d_high - e_high)
-    s[at + 18 * W], s[at + 21 * W] = four + (d_high + e_high), four - (d_high + e_high)
+    s[first], s[first + 3 * W] = sum1 - (d_low - e_low), sum1 + (d_low - e_low)
+    s[first + 6 * W], s[first + 9 * W] = sum2 + (d_low + e_low), sum2 - (d_low + e_low)
+    s[first + 12 * W], s[first + 15 * W] = sum3 - (d_high - e_high), sum3 + (d_high - e_high)
+    s[first + 18 * W], s[first + 21 * W] = sum4 + (d_high + e_high), sum4 - (d_high + e_high)
 
 
 @inlined

@@ -52,8 +52,8 @@ class Energies(NamedTuple):
     @property
     def balance(self) -> float:
         """Return the energy that stays constant."""
-        kept = self.kinetic_energy + self.strain_work + self.hourglass_work
-        return kept + self.contact_work - self.gravity_work
+        energy = self.kinetic_energy + self.strain_work + self.hourglass_work
+        return energy + self.contact_work - self.gravity_work
 
 
 @dataclass
@@ -154,8 +154,8 @@ class March:
     def _take(self) -> None:
         """Take one step, from positions at its beginning to those at its end."""
         system, mesh = self.system, self.system.mesh
-        at = (mesh.pole, mesh.axis_node, mesh.top_node)
-        pole, axis, top = mesh.nodes[at, 2] - system.x[at, 2]
+        tracked = (mesh.pole, mesh.axis_node, mesh.top_node)
+        pole, axis, top = mesh.nodes[tracked, 2] - system.x[tracked, 2]
         pole += self._bulge
         impulse, before, after, beyond = system.move(self._velocity_dt, self._dt)
         if beyond:  # for the patch needed, work grows with radius**4 at least (plastic)

@@ -116,15 +116,16 @@ def advance(
     )
     # Angles in rad by which the material turns about x, y and z in the step.
     turn = (half * (L[2][1] - L[1][2]), half * (L[0][2] - L[2][0]), half * (L[1][0] - L[0][1]))
-    row, gone = STRESS_ROWS * point, PAST_ROWS * point
+    row, past_row = STRESS_ROWS * point, PAST_ROWS * point
     before = turned(_load(state, row, lane), turn)
     trial = less(before, -2.0 * metal[2] * dt, rate)
     back, p = _NONE, 0.0
     if hardens:
-        back, p = turned(_load(past, gone + BACK, lane), turn), past[(gone + PEEQ) * W + lane]
+        back = turned(_load(past, past_row + BACK, lane), turn)
+        p = past[(past_row + PEEQ) * W + lane]
     S, back, dp, along = radial_return(trial, back, p, metal)
     if hardens:
-        _store(past, gone + BACK, lane, back)
+        _store(past, past_row + BACK, lane, back)
     _store(state, row, lane, S)
     work = 0.5 * dt * double_dot(less(before, -1.0, S), rate)
     return S, work, dp * (metal[4] + metal[5] * (p + 0.5 * dp)), dp, along

@@ -123,15 +123,15 @@ def _faces(pairs: int) -> Integers:
 def check_mesh(mesh: Mesh, impact: Impact) -> None:
     """Raise ValueError where the mesh is that of other bodies."""
     beam, nodes = impact.beam, mesh.nodes
-    for name, meshed, wanted in (
+    for name, meshed, length in (
         ("beam's span", 2.0 * nodes[mesh.support, 0].max(), beam.span),
         ("beam's width", 2.0 * nodes[mesh.support, 1].max(), beam.width),
         ("beam's depth", -nodes[:, 2].min(), beam.depth),
         ("sphere's radius", 0.5 * nodes[:, 2].max(), impact.sphere.radius),
     ):
-        if not math.isclose(meshed, wanted, rel_tol=1e-9):
+        if not math.isclose(meshed, length, rel_tol=1e-9):
             raise ValueError(
-                f"mesh: the {name} is {meshed:.9g} m in the mesh and {wanted:.9g} m in the "
+                f"mesh: the {name} is {meshed:.9g} m in the mesh and {length:.9g} m in the "
                 "impact: make the mesh from this impact (quarter_mesh)"
             )
 
@@ -142,9 +142,9 @@ def nodal_masses(mesh: Mesh, impact: Impact) -> Floats:
     The sphere's density is that of sphere_density.
     """
     beam, sphere = impact.beam.material.density, sphere_density(mesh, impact)
-    each = np.repeat(np.where(mesh.body == BEAM, beam, sphere) * element_volumes(mesh) / 8.0, 8)
+    masses = np.repeat(np.where(mesh.body == BEAM, beam, sphere) * element_volumes(mesh) / 8.0, 8)
     return np.asarray(
-        np.bincount(mesh.elements.ravel(), weights=each, minlength=len(mesh.nodes)), dtype=float
+        np.bincount(mesh.elements.ravel(), weights=masses, minlength=len(mesh.nodes)), dtype=float
     )
 
 
@@ -158,8 +158,8 @@ def element_volumes(mesh: Mesh) -> Floats:
     """Return each element's volume in m3, (e,): Gauss's rule of two points per side is exact."""
     points, total = mesh.nodes[mesh.elements], np.zeros(len(mesh.elements))
     for place in CORNERS / np.sqrt(3.0):
-        one = 1.0 + CORNERS * place
-        slopes = [CORNERS[:, a] * np.prod(np.delete(one, a, axis=1), axis=1) for a in range(3)]
+        factors = 1.0 + CORNERS * place
+        slopes = [CORNERS[:, a] * np.prod(np.delete(factors, a, axis=1), axis=1) for a in range(3)]
         total += np.linalg.det(0.125 * np.stack(slopes) @ points)
     return total
 
@@ -185,8 +185,8 @@ def quarter_mesh(
     size, beam = checked_size(impact, element_size), impact.beam
     if positive("mesh", "ratio", ratio) <= 1.0:
         raise ValueError(f"mesh.ratio = {ratio!r}: must be above 1")
-    given = beam.depth / 6.0 if coarsest is None else coarsest
-    largest = max(positive("mesh", "coarsest", given), size)
+    limit = beam.depth / 6.0 if coarsest is None else coarsest
+    largest = max(positive("mesh", "coarsest", limit), size)
     half = checked_patch(impact, size, patch)
     depth = size * max(round(half / size), 2)
     x, y = (graded(size, half, side / 2, ratio, largest) for side in (beam.span, beam.width))
@@ -263,8 +263,8 @@ def quarter_sphere(
     border = np.any(np.abs(lattice) == most, axis=1)
     # A rounded box over the radius: a cube, places in -1 to 1, blended with a ball.
     cube = lattice / most
-    one, two = np.roll(cube**2, -1, axis=1), np.roll(cube**2, -2, axis=1)
-    ball = cube * np.sqrt(1.0 - one / 2.0 - two / 2.0 + one * two / 3.0)
+    second, third = np.roll(cube**2, -1, axis=1), np.roll(cube**2, -2, axis=1)
+    ball = cube * np.sqrt(1.0 - second / 2.0 - third / 2.0 + second * third / 3.0)
     inner = radius * (_CORE * ((1.0 - _ROUND) * cube + _ROUND * ball))
     # Of each border place: 0 in the patch, rising smoothly to 1 at the lower surface's edges.
     i, j, k = lattice[border].T
@@ -274,8 +274,10 @@ def quarter_sphere(
     rays = np.tan(math.pi / 4 * lattice[border] / most)
     outer = rays / np.linalg.norm(rays, axis=1, keepdims=True)
     low = k == -height
-    for axis, at in enumerate((i[low], j[low])):
-        outer[low, axis] = (1.0 - blend[low]) * (lines / radius)[at] + blend[low] * outer[low, axis]
+    for axis, line in enumerate((i[low], j[low])):
+        outer[low, axis] = (1.0 - blend[low]) * (lines / radius)[line] + blend[low] * outer[
+            low, axis
+        ]
     outer[low, 2] = -np.sqrt(1.0 - outer[low, 0] ** 2 - outer[low, 1] ** 2)
     outer *= radius
     # The share of the way out, (layers, border places): fine at the pole, even elsewhere.

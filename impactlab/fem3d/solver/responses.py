@@ -55,7 +55,7 @@ def history_responses(history: History, pause: float) -> tuple[dict[str, float],
     touches = contacts(time, force, pause)
     lasting = touches[:, 1] - touches[:, 0] if len(touches) else np.array([np.nan])
     end = float(touches[-1, 1]) if len(touches) else np.nan
-    at, largest = peak(time, force)
+    peak_time, largest = peak(time, force)
     indented_at, indentation = peak(time, sphere - axis)
     deflected_at, deflection = peak(time, axis)
     # Each force acts from mid-step to mid-step.
@@ -65,7 +65,7 @@ def history_responses(history: History, pause: float) -> tuple[dict[str, float],
     growing = indented_at >= time[-1]  # the force may go on rising with it
     return {
         "peak_force": np.nan if growing else largest,
-        "time_of_peak_force": np.nan if growing else at,
+        "time_of_peak_force": np.nan if growing else peak_time,
         "contact_duration": float(lasting[0]),
         "number_of_contacts": float(len(touches)),
         "total_contact_time": float(np.sum(lasting)),
@@ -101,15 +101,15 @@ def contacts(time: Floats, force: Floats, pause: float) -> Floats:
 
 def peak(time: Floats, values: Floats) -> tuple[float, float]:
     """Return time and size of the largest value, on the parabola through it and its neighbours."""
-    at = int(np.argmax(values))
-    if at in (0, values.size - 1):
-        return float(time[at]), float(values[at])
-    t, y = time[at - 1 : at + 2] - time[at], values[at - 1 : at + 2]
+    largest = int(np.argmax(values))
+    if largest in (0, values.size - 1):
+        return float(time[largest]), float(values[largest])
+    t, y = time[largest - 1 : largest + 2] - time[largest], values[largest - 1 : largest + 2]
     curve, slope, top = np.polyfit(t, y, 2)
     if curve >= 0.0:
-        return float(time[at]), float(values[at])
+        return float(time[largest]), float(values[largest])
     shift = float(np.clip(-0.5 * slope / curve, t[0], t[2]))
-    return float(time[at]) + shift, float(top + 0.5 * slope * shift)
+    return float(time[largest]) + shift, float(top + 0.5 * slope * shift)
 
 
 PLASTIC_ZONE_STRAIN = 1e-5  # PEEQ from which on a section counts as plastic, as in the beam models

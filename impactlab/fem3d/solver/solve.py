@@ -118,11 +118,11 @@ IMPACT_PARAMETERS = [
 def to_dataset(system: System, impact: Impact, history: History, samples: int) -> xr.Dataset:
     """Return all answers of a run, as described in solve_on."""
     mesh, steel = system.mesh, impact.beam.material
-    own = fields(system.groups, len(mesh.elements))
+    element_fields = fields(system.groups, len(mesh.elements))
     # A pause in which a wave crosses the patch twice there and back parts contacts.
     pause = 4.0 * mesh.patch / float(np.sqrt(steel.youngs_modulus / steel.density))
     answers, status = responses(history, impact, pause)
-    answers |= plastic_responses(mesh, impact, own["largest_equivalent_plastic_strain"])
+    answers |= plastic_responses(mesh, impact, element_fields["largest_equivalent_plastic_strain"])
     worked = history.energies[-1].plastic_work if history.energies else np.nan
     answers["plastic_dissipation"] = worked
     last = history.moments[-1].time
@@ -130,7 +130,7 @@ def to_dataset(system: System, impact: Impact, history: History, samples: int) -
     energies = np.array(history.energies).reshape(-1, 7).T
     checkpoints = dict(zip(Energies._fields, energies, strict=True))
     times = checkpoints.pop("time")
-    given = flatten(impact, Discretisation()) | {"sphere_mass": impact.sphere.total_mass}
+    parameters = flatten(impact, Discretisation()) | {"sphere_mass": impact.sphere.total_mass}
     dataset = xr.Dataset(
         {
             **answers,
@@ -141,11 +141,11 @@ def to_dataset(system: System, impact: Impact, history: History, samples: int) -
                 for name, values in histories(history).items()
             },
             **{name: ("checkpoint", values) for name, values in checkpoints.items()},
-            **{name: ("element", values) for name, values in own.items()},
+            **{name: ("element", values) for name, values in element_fields.items()},
             "displacement": (("node", "axis"), system.x - mesh.nodes),
         },
         coords={
-            **{name: given[name] for name in IMPACT_PARAMETERS},
+            **{name: parameters[name] for name in IMPACT_PARAMETERS},
             "time": even,
             "checkpoint_time": ("checkpoint", times),
             "node_position": (("node", "axis"), mesh.nodes),
@@ -182,10 +182,10 @@ def histories(history: History) -> dict[str, Floats]:
     }
 
 
-def named(dataset: xr.Dataset, own: Mapping[str, tuple[str, str]]) -> xr.Dataset:
-    """Return the dataset with attributes on all variables; own: units and long_name of more."""
+def named(dataset: xr.Dataset, more: Mapping[str, tuple[str, str]]) -> xr.Dataset:
+    """Return the dataset with attributes on all variables; more: units and long_name of others."""
     dataset = described(dataset)
-    for name, (units, long_name) in own.items():
+    for name, (units, long_name) in more.items():
         if name in dataset.variables:
             dataset[name].attrs |= {"units": units, "long_name": long_name}
     return dataset

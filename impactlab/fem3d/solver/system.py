@@ -106,10 +106,10 @@ class ForceAssembly:
             rows = np.empty_like(group.nodes)
             for piece in range(MOST_THREADS):
                 blocks = slice(*blocks_of(len(group.nodes), piece, MOST_THREADS))
-                own, place = np.unique(group.nodes[blocks], return_inverse=True)
+                distinct, place = np.unique(group.nodes[blocks], return_inverse=True)
                 rows[blocks] = self.count + place.reshape(rows[blocks].shape)
-                owners.append(own)
-                self.count += own.size
+                owners.append(distinct)
+                self.count += distinct.size
             spare = len(group.nodes) * W - group.elements.size
             rows.reshape(-1, 8, W)[-1, :, W - spare :] = self.count  # fills the block, adds nothing
             owners.append(np.array([nodes]))
@@ -176,8 +176,8 @@ def integrate(
     """
     for node in range(nodes[0], nodes[1]):
         f0, f1, f2 = 0.0, 0.0, 0.0
-        for at in range(starts[node], starts[node + 1]):
-            slot = slots[at]
+        for position in range(starts[node], starts[node + 1]):
+            slot = slots[position]
             f0 += forces[slot, 0]
             f1 += forces[slot, 1]
             f2 += forces[slot, 2]
@@ -227,10 +227,10 @@ class System:
         def work(thread: int, first: int, end: int) -> None:
             scratch = self._scratch[thread]
             for group, rows in zip(self.groups, self.assembly.of_groups, strict=True):
-                own = (group.elements.size, group.points == 8, group.metal, group.nodes, rows)
+                arrays = (group.elements.size, group.points == 8, group.metal, group.nodes, rows)
                 held = (group.state, group.past, group.works)
                 moved = (self.x, self.v, dt)
-                add_forces((first, end), *own, *held, *moved, self.forces, scratch)
+                add_forces((first, end), *arrays, *held, *moved, self.forces, scratch)
 
         self.pool.run(work, MOST_THREADS)
 
@@ -240,9 +240,9 @@ class System:
         moved = (*rows, self.inverse_mass, self.pull, self.x, self.v, velocity_dt, dt)
         self.pool.run(lambda _, first, end: integrate((first, end), *moved), len(self.x))
         mesh = self.mesh
-        own = (mesh.faces, mesh.bulge, self._share, mesh.pairs, mesh.rim, mesh.normals)
+        contact = (mesh.faces, mesh.bulge, self._share, mesh.pairs, mesh.rim, mesh.normals)
         return close_gaps(
-            RULE, *own, self.inverse_mass, self.x, self.v, dt, self.approach, self.closing
+            RULE, *contact, self.inverse_mass, self.x, self.v, dt, self.approach, self.closing
         )
 
 
