@@ -123,8 +123,8 @@ def draw(
     figure, axes = responses_grid.panels(axis.names(runs), height=44)
     for name, ax in axes.items():
         _write_verdict(ax, needs, axis.name, name)
-        found = access.occurring(_of(analysis, f"{axis.name}_verdict", name))
-        if any(verdict.flag == "not_convergent_by_design" for verdict in found):
+        verdicts = access.occurring(_of(analysis, f"{axis.name}_verdict", name))
+        if any(verdict.flag == "not_convergent_by_design" for verdict in verdicts):
             _draw_values(ax, runs, name, spacing, selected)
             continue
         difference = _relative_difference(runs, analysis, axis, name)
@@ -183,7 +183,10 @@ def _verdicts(runs: xr.Dataset, analysis: xr.Dataset, axis: str, names: list[str
         if not len(cases):
             continue
         shown = [
-            ", ".join(labels.value(runs[dim], at) for dim, at in zip(flags.dims, case, strict=True))
+            ", ".join(
+                labels.value(runs[dim], position)
+                for dim, position in zip(flags.dims, case, strict=True)
+            )
             for case in cases[:_NAMED]
         ]
         if len(cases) > _NAMED:
@@ -192,9 +195,9 @@ def _verdicts(runs: xr.Dataset, analysis: xr.Dataset, axis: str, names: list[str
             shown = ["every case"]
         place = f" ({'; '.join(shown)})" if any(shown) else ""
         places.setdefault(place, []).append(labels.response(name))
-    found = [labels.listing(listed) + place for place, listed in places.items()]
-    if found:
-        sentences.append(f"Not converged on the finest grid: {'; '.join(found)}.")
+    entries = [labels.listing(listed) + place for place, listed in places.items()]
+    if entries:
+        sentences.append(f"Not converged on the finest grid: {'; '.join(entries)}.")
     return " ".join(sentences)
 
 
@@ -244,8 +247,8 @@ def _of(analysis: xr.Dataset, variable: str, name: str) -> xr.DataArray:
 
 def _read(analysis: xr.Dataset, axis: str, name: str, where: dict[str, int], key: str) -> float:
     """Return a number of the analysis of one curve; NaN where there is none."""
-    found = _of(analysis, f"{axis}_{key}", name)
-    return float(found.isel(where, missing_dims="ignore"))
+    values = _of(analysis, f"{axis}_{key}", name)
+    return float(values.isel(where, missing_dims="ignore"))
 
 
 def _draw_trend(ax: Axes, spacing: Floats, errors: Floats, read: Callable[[str], float]) -> str:
@@ -260,13 +263,15 @@ def _draw_trend(ax: Axes, spacing: Floats, errors: Floats, read: Callable[[str],
         power = np.exp(np.nanmedian(scale)) * ends**order
         ax.plot(ends, power, color=colour, label="_order", **_DASHED)
     if np.isfinite(uncertainty) and uncertainty > ROUND_OFF:
-        at, low = spacing[near[0]], errors[near[0]]
+        position, low = spacing[near[0]], errors[near[0]]
         look: dict[str, Any] = {"marker": "_", "markersize": 6}
         if np.isfinite(low):
-            ax.plot([at, at], [low, uncertainty], color=colour, linewidth=0.8, label="_bar")
+            ax.plot(
+                [position, position], [low, uncertainty], color=colour, linewidth=0.8, label="_bar"
+            )
         else:  # no cap without its marker
             look = {"marker": marker, "markerfacecolor": "white"}
-        ax.plot(at, uncertainty, color=colour, linestyle="", label="_bar", **look)
+        ax.plot(position, uncertainty, color=colour, linestyle="", label="_bar", **look)
     if not np.isfinite(order):
         return ""
     observed = richardson or read("fit_expansion") == 0  # else assumed

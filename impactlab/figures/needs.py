@@ -71,7 +71,7 @@ class Needs(NamedTuple):
             verdict = self.verdict(REFINED[dim], name)
             if verdict and not verdict.sound:
                 axes.setdefault(verdict.words, []).append(_WORDS[REFINED[dim]])
-        doubts = [f"{words} in {labels.listing(listed)}" for words, listed in axes.items()]
+        doubts = [f"{texts} in {labels.listing(listed)}" for texts, listed in axes.items()]
         if doubts or name in self.grids:
             return doubts
         listed = [_WORDS[REFINED[dim]] for dim in self.axes]
@@ -100,9 +100,11 @@ def needed(runs: xr.Dataset, analysis: xr.Dataset) -> Needs | None:
     tried = []
     names = analysed(runs, analysis) if axes else []
     for kind in product(*(runs[dim].values.tolist() for dim in kinds)) if names else ():
-        here = runs.sel({dim: [value] for dim, value in zip(kinds, kind, strict=True)})
-        tried.append(_least(here, analysis.sel(response=names), axes))
-    return max(tried, key=lambda one: len(one.grids), default=None)  # the first of equals
+        selected = runs.sel({dim: [value] for dim, value in zip(kinds, kind, strict=True)})
+        tried.append(_least(selected, analysis.sel(response=names), axes))
+    return max(
+        tried, key=lambda candidate: len(candidate.grids), default=None
+    )  # the first of equals
 
 
 def _least(runs: xr.Dataset, analysis: xr.Dataset, axes: list[str]) -> Needs:
@@ -118,7 +120,9 @@ def _least(runs: xr.Dataset, analysis: xr.Dataset, axes: list[str]) -> Needs:
     for axis in (REFINED[dim] for dim in axes):
         error = error + judged[f"{axis}_uncertainty"]
         verdicts = judged[f"{axis}_verdict"]
-        is_sound = verdicts.isin([each.value for each in access.occurring(verdicts) if each.sound])
+        is_sound = verdicts.isin(
+            [verdict.value for verdict in access.occurring(verdicts) if verdict.sound]
+        )
         sound = sound & is_sound.all([dim for dim in verdicts.dims if dim != "response"])
     same = (values == limit).all(axes)  # as is a plastic strain that is zero everywhere
     error = error.fillna(np.inf).where(~same, 0.0).transpose("response", *axes, ...)
@@ -129,8 +133,8 @@ def _least(runs: xr.Dataset, analysis: xr.Dataset, axes: list[str]) -> Needs:
     best = cost.where(within == 1, np.inf).transpose(*error.dims).argmin(axes)
     grids = {
         name: tuple(int(best[dim].sel(response=name)) for dim in axes)
-        for name, found in zip(names, within.any(axes).values, strict=True)
-        if found
+        for name, is_within in zip(names, within.any(axes).values, strict=True)
+        if is_within
     }
     errors = {name: error.sel(response=name) for name in names}
     return Needs(runs, axes, grids, errors, judged)

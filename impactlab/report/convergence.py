@@ -58,15 +58,15 @@ def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
         cells: dict[str, Cell] = {}
         rows: list[Row] = []
         for name in needs.errors:
-            found = needs.analysis.sel(response=name)
-            behaviours = access.occurring(found.get(f"{axis}_behaviour", xr.DataArray()))
+            numbers = needs.analysis.sel(response=name)
+            behaviours = access.occurring(numbers.get(f"{axis}_behaviour", xr.DataArray()))
             detail = ", ".join(behaviour.words for behaviour in behaviours)
             detail = f"behaviour: {detail}" if detail else ""
             verdict = needs.verdict(axis, name)
             kind = "" if verdict and verdict.sound else "warning"
             judged = Cell(verdict.words if verdict else "not judged", kind, detail)
             cells = (
-                _cells(found, axis) if axis != "points" else _points_cells(analysis, needs, name)
+                _cells(numbers, axis) if axis != "points" else _points_cells(analysis, needs, name)
             )
             rows.append([labels.sentence(labels.response(name)), judged, *cells.values()])
         remarks = [explanation, *_remarks(needs.analysis, axis)]
@@ -109,37 +109,37 @@ def _remarks(analysis: xr.Dataset, axis: str) -> list[str]:
     return remarks
 
 
-def _cells(found: xr.Dataset, axis: str) -> dict[str, Cell]:
+def _cells(numbers: xr.Dataset, axis: str) -> dict[str, Cell]:
     """Return the numbers of one response at the finest grid, by the head of their column."""
-    indexed = _resting_on(found, axis, "gci", "gci_and_fit")
-    fitted = _resting_on(found, axis, "fit", "gci_and_fit")
+    indexed = _resting_on(numbers, axis, "gci", "gci_and_fit")
+    fitted = _resting_on(numbers, axis, "fit", "gci_and_fit")
     ratio = _spread(indexed, f"{axis}_asymptotic_ratio").text
     detail = "" if ratio == "–" else f"asymptotic ratio {ratio}"
     return {
-        "Observed order": _spread(found, f"{axis}_observed_order"),
+        "Observed order": _spread(numbers, f"{axis}_observed_order"),
         "Largest GCI": replace(largest(indexed, f"{axis}_gci"), detail=detail),
         "Order of the fit": _spread(fitted, f"{axis}_fit_order"),
         "Uncertainty by the fit": largest(fitted, f"{axis}_fit_uncertainty"),
-        "Numerical uncertainty": _uncertainty(found, axis),
+        "Numerical uncertainty": _uncertainty(numbers, axis),
     }
 
 
-def _resting_on(found: xr.Dataset, axis: str, *flags: str) -> xr.Dataset:
+def _resting_on(numbers: xr.Dataset, axis: str, *flags: str) -> xr.Dataset:
     """Return the numbers where the uncertainty rests on one of these; NaN elsewhere."""
-    basis = found.get(f"{axis}_uncertainty_from")
+    basis = numbers.get(f"{axis}_uncertainty_from")
     if basis is None:
-        return found
+        return numbers
     codes = [flag.value for flag in access.occurring(basis) if flag.flag in flags]
-    return found.where(basis.isin(codes))
+    return numbers.where(basis.isin(codes))
 
 
-def _uncertainty(found: xr.Dataset, axis: str) -> Cell:
+def _uncertainty(numbers: xr.Dataset, axis: str) -> Cell:
     """Return the largest numerical uncertainty, with a reason where nothing bounds it."""
-    cell = largest(found, f"{axis}_uncertainty")
-    endless = np.isinf(found[f"{axis}_uncertainty"])
+    cell = largest(numbers, f"{axis}_uncertainty")
+    endless = np.isinf(numbers[f"{axis}_uncertainty"])
     if not endless.any():
         return cell
-    basis = found.get(f"{axis}_uncertainty_from", xr.DataArray())
+    basis = numbers.get(f"{axis}_uncertainty_from", xr.DataArray())
     bounded = [flag.value for flag in access.occurring(basis) if flag.flag != "nothing"]
     zero = bool((endless & basis.isin(bounded)).any())
     return replace(cell, detail="the finest value is zero" if zero else "nothing bounds the error")
@@ -152,15 +152,17 @@ def _points_cells(analysis: xr.Dataset, needs: Needs, name: str) -> dict[str, Ce
     cells = {head: by_rule}
     if "rule" in by_rule.dims:
         rules = labels.values(by_rule["rule"], range(by_rule.sizes["rule"]))
-        cells = {f"{head}, {rule}": by_rule.isel(rule=at) for at, rule in enumerate(rules)}
+        cells = {
+            f"{head}, {rule}": by_rule.isel(rule=position) for position, rule in enumerate(rules)
+        }
     uncertain = largest(needs.analysis.sel(response=name), "points_uncertainty")
     return {head: _most(counts.values) for head, counts in cells.items()} | {
         "Numerical uncertainty with the most points": uncertain
     }
 
 
-def _spread(found: xr.Dataset, variable: str) -> Cell:
-    values = found.get(variable, xr.DataArray()).values
+def _spread(numbers: xr.Dataset, variable: str) -> Cell:
+    values = numbers.get(variable, xr.DataArray()).values
     finite = values[np.isfinite(values)]
     return Cell(labels.span(finite, 3) if finite.size else "–", "number")
 

@@ -90,53 +90,57 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     """
     sample, names = Sample.of(runs), histories(runs)
     check(sample)
-    found = [_of_history(sample, name) for name in names]
+    answers = [_of_history(sample, name) for name in names]
     factors = list(sample.factors)
-    what = "group of varied parameters" if sample.groups else "varied parameter"
-    told = [attributes(name) for name in names]
+    factor_label = "group of varied parameters" if sample.groups else "varied parameter"
+    metadata = [attributes(name) for name in names]
     coordinates: dict[str, Any] = {
-        "parameter": ("parameter", factors, {"long_name": what}),
+        "parameter": ("parameter", factors, {"long_name": factor_label}),
         "time": runs["time"].variable,
         "history": ("history", names, {"long_name": "history"}),
-        "history_units": ("history", [each["units"] for each in told]),
-        "history_long_name": ("history", [each["long_name"] for each in told]),
+        "history_units": ("history", [entry["units"] for entry in metadata]),
+        "history_long_name": ("history", [entry["long_name"] for entry in metadata]),
     }
     variables: dict[str, Any] = {
-        key: (dims, np.stack([one[key] for one in found]), attrs)
+        key: (dims, np.stack([answer[key] for answer in answers]), attrs)
         for key, (dims, attrs) in _described(sample).items()
     }
     dataset = xr.Dataset(variables, coordinates)
-    for key, dims, kind, words in (
+    for key, dims, kind, label in (
         ("time_verdict", ("history", "time"), TimeVerdict, "indices at each time"),
         ("history_verdict", ("history",), HistoryVerdict, "generalised indices"),
     ):
-        codes = xr.DataArray(np.stack([one[key] for one in found]), dims=dims)
-        dataset[key] = flagged(codes, kind, f"verdict on the {words}")
+        codes = xr.DataArray(np.stack([answer[key] for answer in answers]), dims=dims)
+        dataset[key] = flagged(codes, kind, f"verdict on the {label}")
     return dataset
 
 
 def _described(sample: Sample) -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
     """Return dimensions and attributes of all variables but the verdicts."""
     settings = {"confidence": sample.confidence}
-    found: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {}
-    for order, (words, source) in _ORDERS.items():
-        over = ("history", "time", "parameter"), f"{words} Sobol index at each time", source
-        whole = ("history", "parameter"), f"generalised {words} Sobol index", f"{_2014}; {source}"
+    variables: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {}
+    for order, (label, source) in _ORDERS.items():
+        over = ("history", "time", "parameter"), f"{label} Sobol index at each time", source
+        generalised = (
+            ("history", "parameter"),
+            f"generalised {label} Sobol index",
+            f"{_2014}; {source}",
+        )
         names = f"{order}_over_time", f"generalised_{order}"
-        for name, (dims, long_name, estimator) in zip(names, (over, whole), strict=True):
+        for name, (dims, long_name, estimator) in zip(names, (over, generalised), strict=True):
             attrs = {"long_name": long_name, "units": "1", "estimator": estimator}
             width = f"half-width of the {100 * sample.confidence:g} % interval of the {long_name}"
-            found[name] = dims, attrs
-            found[f"{name}_interval"] = dims, attrs | {"long_name": width} | settings
+            variables[name] = dims, attrs
+            variables[f"{name}_interval"] = dims, attrs | {"long_name": width} | settings
     by_time = ("history", "time")
     comment = "in the unit that history_units states"
-    for name, words in (
+    for name, label in (
         ("history_mean", "mean over the runs of the two base samples, A and B"),
         ("history_deviation", "standard deviation over the runs of A and B"),
     ):
-        found[name] = by_time, {"long_name": words, "comment": comment}
+        variables[name] = by_time, {"long_name": label, "comment": comment}
     left = {"long_name": "base samples left out, for a run of theirs failed", "units": "1"}
-    return found | {"base_samples_left_out": (("history",), left)}
+    return variables | {"base_samples_left_out": (("history",), left)}
 
 
 @dataclass(frozen=True)
@@ -215,8 +219,8 @@ def sums(sample: Sample, name: str, good: Any, times: slice, most: int | None = 
         block = np.asarray(column[start * size : end * size].values, float)
         block = block.reshape(end - start, size, -1)
         rows = _statistics(block - origin, good[start:end], sample)
-        for row, at in zip(rows, place[start:end], strict=True):
-            total[at] += row
+        for row, replicate in zip(rows, place[start:end], strict=True):
+            total[replicate] += row
     return Sums(total[np.bincount(place, good) > 0], origin)
 
 
@@ -240,7 +244,7 @@ def _of_history(sample: Sample, name: str) -> dict[str, Any]:
     good = ~failed.reshape(-1, step(sample)).any(axis=1)
     times = np.asarray(runs["time"].values, float)
     size, columns = len(times), _columns(sample)
-    found: dict[str, Any] = {
+    variables: dict[str, Any] = {
         "at_times": np.full((size, 2 * factors), np.nan),
         "at_times_interval": np.full((size, 2 * factors), np.nan),
         "history_mean": np.full(size, np.nan),
@@ -253,14 +257,14 @@ def _of_history(sample: Sample, name: str) -> dict[str, Any]:
         part = slice(start, min(start + together, size))
         parts, mean, numbers[part] = sums(sample, name, good, part).parts(factors)
         at_times = parts.at_times()
-        found["at_times"][part] = at_times[0]
+        variables["at_times"][part] = at_times[0]
         margins = half_width(at_times[1:], sample.confidence)
-        found["at_times_interval"][part] = np.where(np.isnan(at_times[0]), np.nan, margins)
+        variables["at_times_interval"][part] = np.where(np.isnan(at_times[0]), np.nan, margins)
         deviation = np.sqrt(np.where(parts.varies[0], parts.variance[0], 0.0))
-        found["history_mean"][part], found["history_deviation"][part] = mean, deviation
+        variables["history_mean"][part], variables["history_deviation"][part] = mean, deviation
         integrals = integrals + _integrated(parts, weights[part])
     left_out = len(good) - int(numbers.min())
-    return _named(found, integrals, left_out, sample)
+    return _named(variables, integrals, left_out, sample)
 
 
 def _integrated(parts: Parts, weights: Floats) -> Floats:
@@ -271,42 +275,42 @@ def _integrated(parts: Parts, weights: Floats) -> Floats:
 
 
 def _named(
-    found: dict[str, Any], integrals: Floats, left_out: int, sample: Sample
+    variables: dict[str, Any], integrals: Floats, left_out: int, sample: Sample
 ) -> dict[str, Any]:
     """Return the variables of a history, with their verdicts."""
     base, factors = sample.number("base_samples"), len(sample.factors)
     few = base - left_out < FEWEST or left_out > MOST_IMPUTED * base
     numerators, denominators = integrals[:, 0], integrals[:, 1]
     indices = numerators / np.where(denominators > 0, denominators, np.nan)  # NaN: nothing varies
-    whole, margins = indices[0], half_width(indices[1:], sample.confidence)
-    at_times, at_margins = found["at_times"], found["at_times_interval"]
+    generalised, margins = indices[0], half_width(indices[1:], sample.confidence)
+    at_times, at_margins = variables["at_times"], variables["at_times_interval"]
     if few:
-        for each in (whole, margins, at_times, at_margins, found["history_mean"]):
-            each[...] = np.nan
-        found["history_deviation"][...] = np.nan
+        for array in (generalised, margins, at_times, at_margins, variables["history_mean"]):
+            array[...] = np.nan
+        variables["history_deviation"][...] = np.nan
     undefined = np.isnan(at_times).any(axis=1)
     codes = np.where(np.isnan(at_margins).any(axis=1), TimeVerdict.NO_INTERVAL, TimeVerdict.GIVEN)
     codes = np.where(undefined, TimeVerdict.CONSTANT, codes)
     holds = {
         HistoryVerdict.WIDE_INTERVALS: not (margins <= WIDE).all(),
         HistoryVerdict.INCONSISTENT: inconsistent(
-            whole[:factors], margins[:factors], whole[factors:], margins[factors:]
+            generalised[:factors], margins[:factors], generalised[factors:], margins[factors:]
         ),
         HistoryVerdict.RUNS_LEFT_OUT: left_out > 0,
-        HistoryVerdict.CONSTANT: np.isnan(whole).any(),
+        HistoryVerdict.CONSTANT: np.isnan(generalised).any(),
         HistoryVerdict.TOO_FEW_RUNS: few,
     }
     named: dict[str, Any] = {
-        "history_mean": found["history_mean"],
-        "history_deviation": found["history_deviation"],
+        "history_mean": variables["history_mean"],
+        "history_deviation": variables["history_deviation"],
         "base_samples_left_out": left_out,
         "time_verdict": np.full_like(codes, TimeVerdict.TOO_FEW_RUNS) if few else codes,
         "history_verdict": max((kind for kind, held in holds.items() if held), default=0),
     }
-    for at, order in enumerate(_ORDERS):
-        columns = slice(at * factors, (at + 1) * factors)
+    for position, order in enumerate(_ORDERS):
+        columns = slice(position * factors, (position + 1) * factors)
         named[f"{order}_over_time"] = at_times[:, columns]
         named[f"{order}_over_time_interval"] = at_margins[:, columns]
-        named[f"generalised_{order}"] = whole[columns]
+        named[f"generalised_{order}"] = generalised[columns]
         named[f"generalised_{order}_interval"] = margins[columns]
     return named

@@ -58,7 +58,10 @@ class Outputs:
         sums = np.zeros(())
         for start in range(0, len(self.table), _ROWS):
             rows = self._statistics(interactions, slice(start, start + _ROWS))
-            sums = sums + [rows[at :: self.replicates].sum(axis=0) for at in range(self.replicates)]
+            sums = sums + [
+                rows[replicate :: self.replicates].sum(axis=0)
+                for replicate in range(self.replicates)
+            ]
         places = np.arange(len(self.table)) % self.replicates
         sizes = np.bincount(places).astype(float)
         return leave_one_out(sums) / leave_one_out(sizes)[:, None]
@@ -132,7 +135,7 @@ def estimates(means: Floats, factors: int) -> dict[str, Floats]:
     first, total = np.split(numerators / _positive(denominators), 2, axis=-1)
     a, b, squared_a, squared_b, product = np.moveaxis(means[..., :_ALONE], -1, 0)
     covariance, variance = product - a * b, (squared_a + squared_b - a**2 - b**2) / 2
-    found = {
+    indices = {
         "first_order": first,
         "total_order": total,
         "base_correlation": covariance / _positive(variance),
@@ -146,8 +149,8 @@ def estimates(means: Floats, factors: int) -> dict[str, Floats]:
         closed = pairs - (ab[..., i] * ba[..., j] + ab[..., j] * ba[..., i]) / 2
         closed = closed - weight * covariance[..., None]
         closed = closed / _positive((scatter[..., i] + scatter[..., j]) / 4)
-        found["second_order"] = closed - first[..., i] - first[..., j]
-    return found
+        indices["second_order"] = closed - first[..., i] - first[..., j]
+    return indices
 
 
 def _positive(variance: Floats) -> Floats:
@@ -198,15 +201,15 @@ def check(sample: Sample) -> None:
             "design`, then solve it"
         )
     base, factors = sample.number("base_samples"), len(sample.factors)
-    words = f"{base} base samples of {factors} {'groups' if sample.groups else 'parameters'}"
-    sample.expect(base * step(sample), words)
+    size = f"{base} base samples of {factors} {'groups' if sample.groups else 'parameters'}"
+    sample.expect(base * step(sample), size)
 
 
 def base_samples(sample: Sample) -> list[int]:
     """Return the sizes of the nested samples, up to the whole one."""
-    whole = sample.number("base_samples")
-    sizes = [whole >> halving for halving in range(HALVINGS, 0, -1)]
-    return [size for size in sizes if size >= FEWEST] + [whole]
+    largest = sample.number("base_samples")
+    sizes = [largest >> halving for halving in range(HALVINGS, 0, -1)]
+    return [size for size in sizes if size >= FEWEST] + [largest]
 
 
 def varying(outputs: Floats, sample: Sample) -> list[Floats]:
@@ -217,12 +220,12 @@ def varying(outputs: Floats, sample: Sample) -> list[Floats]:
 
 def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
     series = [_of_first(size, outputs, sample) for size in base_samples(sample)]
-    found, gap = dict(series[-1]), np.full(len(sample.factors), np.nan)
+    indices, gap = dict(series[-1]), np.full(len(sample.factors), np.nan)
     for order in ("first_order", "total_order"):
         for ending in ("", "_interval"):
             values = [part.get(f"{order}{ending}", gap) for part in series]
-            found[f"{order}_by_samples{ending}"] = np.stack(values)
-    return found
+            indices[f"{order}_by_samples{ending}"] = np.stack(values)
+    return indices
 
 
 def _of_first(size: int, outputs: Floats, sample: Sample) -> dict[str, Floats]:
@@ -232,13 +235,13 @@ def _of_first(size: int, outputs: Floats, sample: Sample) -> dict[str, Floats]:
         return {}
     interactions = start.size == outputs.size  # pairs have no indices by samples
     replicated = estimates(Outputs.of(start, sample).means(interactions), factors)
-    found = {name: values[0] for name, values in replicated.items()}
+    indices = {name: values[0] for name, values in replicated.items()}
     for name in replicated.keys() - {"base_correlation"}:
-        found[f"{name}_interval"] = half_width(replicated[name][1:], sample.confidence)
-    found["base_correlation_noise"] = half_width(replicated["base_correlation"][1:], 1 - CHANCE)
-    for name in {"second_order", "second_order_interval"} & found.keys():
-        found[name] = _matrix(found[name], factors)
-    return found
+        indices[f"{name}_interval"] = half_width(replicated[name][1:], sample.confidence)
+    indices["base_correlation_noise"] = half_width(replicated["base_correlation"][1:], 1 - CHANCE)
+    for name in {"second_order", "second_order_interval"} & indices.keys():
+        indices[name] = _matrix(indices[name], factors)
+    return indices
 
 
 def _matrix(values: Floats, factors: int) -> Floats:
