@@ -1,4 +1,4 @@
-"""What this wing adds to the core: a command, and the model `solid` beside the beam models."""
+"""Additions of this wing to the core: a command, and the model `solid` beside the beam models."""
 
 from impactlab.wings import Model, Size, Wing
 

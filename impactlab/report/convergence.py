@@ -1,4 +1,4 @@
-"""What a convergence study found: the grid each response needs, and tables per axis."""
+"""Sections on convergence: the grid that each response needs, and tables per axis."""
 
 from __future__ import annotations
 

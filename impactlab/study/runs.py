@@ -202,7 +202,7 @@ def file_stats(paths: Iterable[Path]) -> Iterator[os.stat_result]:
 
 
 def removable_files(folder: Path, designs: Collection[xr.Dataset] | None) -> dict[Path, str]:
-    """Return the files of a study's folder of shards that may be removed, and the reasons.
+    """Return the files among a study's shards that may be removed, and the reasons.
 
     designs: all that the study may need; None of pilot runs and refinements, which are all kept but
     those of another solver: only a search tells which would be needed again. A shard stays as long

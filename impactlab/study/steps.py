@@ -1,4 +1,4 @@
-"""The steps of a study, one function each: resolve, solve, refine, analyse, check, tidy up.
+"""Steps of a study, one function each: resolve, solve, refine, analyse, check, tidy up.
 
 The commands parse, call these and print; whatever else runs a study calls them too. Each imports
 what it needs: compiler and analysis take seconds to load.

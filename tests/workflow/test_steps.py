@@ -1,4 +1,4 @@
-"""Every step of a study as a command, without Snakemake."""
+"""Steps of a study as commands, without Snakemake."""
 
 import os
 import re

@@ -81,7 +81,7 @@ class Divided:
 
     @property
     def polynomials(self) -> tuple[Polynomials, ...]:
-        """Those of each parameter."""
+        """Polynomials of each parameter."""
         return tuple(orthonormal(self.sample.runs[n].attrs) for n in self.sample.parameters)
 
     def fit(

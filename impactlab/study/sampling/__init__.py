@@ -24,7 +24,7 @@ METHODS: Mapping[str, type[Sampling]] = {
     "pawn": Pawn,
     "regression": Latin,
 }
-"""Sections by their method's name in study files: a new one is a class and a line."""
+"""Sections by the method that study files name: a new one is a class and a line."""
 
 
 def read_sampling(data: Any, info: ValidationInfo) -> Sampling:

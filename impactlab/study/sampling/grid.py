@@ -60,7 +60,7 @@ class Range(Section, Generic[Q]):
 class Grid(Sampling):
     """The section `sampling` with method: grid.
 
-    Every combination of the listed values is a run, the last parameter changing fastest.
+    Combinations of the listed values are runs, the last parameter changing fastest.
     parameters: distinct values (SI numbers, or words) by parameter.
     """
 

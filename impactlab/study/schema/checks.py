@@ -35,7 +35,7 @@ def further_models(study: Study | StudyFile) -> list[wings.Model]:
 
 
 def values_of(sampling: Grid | Sample, name: str, base: Value) -> tuple[Value, ...]:
-    """Return all values of a parameter of which a sample draws no numbers."""
+    """Return all values of a parameter that a sample draws no numbers for."""
     if isinstance(sampling, Grid):
         return sampling.parameters.get(name, (base,))
     if isinstance(entry := sampling.parameters.get(name), Choice):
@@ -45,7 +45,7 @@ def values_of(sampling: Grid | Sample, name: str, base: Value) -> tuple[Value, .
 
 
 def extremes(base: Base, sampling: Sampling) -> Extremes:
-    """Return the least and greatest values of a study, of base and varied parameters.
+    """Return the least and greatest values of base and varied parameters.
 
     A tail ends at its last thousandth; one that reaches below zero is left to the check of draws.
     """

@@ -184,7 +184,7 @@ def validated(
     parameters: Mapping[str, Parameter] = PARAMETERS,
     responses: Mapping[str, str] | None = None,
 ) -> S:
-    """Return the content of a file as a section. Raises StudyError with all of its problems.
+    """Return a file's content as its section. Raises StudyError with all of its problems.
 
     parameters: those that it can vary. responses: those that it may have, with their units.
     """

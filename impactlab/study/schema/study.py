@@ -106,7 +106,7 @@ def read_discretisation(data: Any, info: ValidationInfo) -> tuple[Discretisation
 
 
 def _given_values(section: Section, root: str) -> dict[str, Any]:
-    """Return the values in a section, by the name of the parameter."""
+    """Return the values in a section by parameter."""
     tree = {root: section.model_dump(exclude_unset=True)}
     values = {}
     for name, entry in PARAMETERS.items():
@@ -181,7 +181,7 @@ class StudyFile(Heading):
 
 @dataclass(frozen=True)
 class Declared:
-    """What a file declares, of any kind.
+    """Declarations of a file of any kind.
 
     name: the file's name without its ending; path: as given. text: the file as it was read.
     """

@@ -1,4 +1,4 @@
-"""Answers, progress and removable files of a study, from its shards."""
+"""Answers, progress and removable files of a study from shards."""
 
 import numpy as np
 import pytest

@@ -54,7 +54,7 @@ def test_stated_errors_hold_at_one_bound_and_in_corners() -> None:
 
 
 def test_stated_errors_hold_in_the_middle() -> None:
-    """Of a response whose error is the same wherever the terms of the chaos are small."""
+    """The error of the response is the same wherever the terms of the chaos are small."""
     rng, inside = np.random.default_rng(0), []
     for _ in range(200):
         leverages = np.exp(rng.normal(-0.5, 1.0, 400))
