@@ -63,7 +63,7 @@ class Model:
 
 @dataclass(frozen=True, kw_only=True)
 class Wing:
-    """Additions of a wing: references to commands by name; contents of files, see files.CONTENTS."""
+    """Additions of a wing: references to commands by name; contents of files (files.CONTENTS)."""
 
     commands: Mapping[str, str]
     contents: Mapping[str, str] = field(default_factory=dict)

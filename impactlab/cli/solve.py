@@ -144,7 +144,7 @@ def run(
         "processes" if processes else "threads", workers, scheduler, profile, batch_seconds
     )
     options = {"force": force, "replace": replace}
-    steps.run(study, path, engine, drawn=stored, tell=print_recommendation, **options)
+    steps.run(study, path, engine, runs=stored, tell=print_recommendation, **options)
     print_solved(path)
 
 

@@ -59,12 +59,12 @@ def calibrate(
     if not isinstance(study.sampling, Sample):
         reason = "calibration needs a sample (any method but grid), whose ranges are the prior"
         raise StudyError(Problem(str(study.path), "sampling.method", reason))
-    if words := [name for name in study.sampling.words if name != "contact"]:
+    if categories := [name for name in study.sampling.words if name != "contact"]:
         reason = (
             "draws words, and no surrogate is fitted over words: fix it (contact laws alone are "
             "weighed against each other)"
         )
-        raise StudyError(Problem(str(study.path), f"sampling.parameters.{words[0]}", reason))
+        raise StudyError(Problem(str(study.path), f"sampling.parameters.{categories[0]}", reason))
     if isinstance(study.sampling, Latin) and study.sampling.correlations:
         reason = f"{study.sampling.no_surrogate}: take them out"
         raise StudyError(Problem(str(study.path), "sampling.correlations", reason))
@@ -82,25 +82,25 @@ def calibrate(
                 "distributions (contact laws are weighed by --contact)"
             )
         surrogates[name] = Surrogate(fitted)
-    if kept := steps.evidence(study, folder / "runs.nc").get("resolution"):
-        grid = read_netcdf(kept, "resolution")["grid_relative"]
+    if resolution := steps.evidence(study, folder / "runs.nc").get("resolution"):
+        grid = read_netcdf(resolution, "resolution")["grid_relative"]
         numerical = dict(zip(grid["response"].values.tolist(), grid.values.tolist(), strict=True))
     weights = _drawn(study)
     before = weights if weights.keys() == surrogates.keys() else None
-    found = calibrated(surrogates, measurements, numerical, model_error, before)
-    found = _confirmed(found, runs, measurements, folder / CALIBRATION, engine)
+    posterior = calibrated(surrogates, measurements, numerical, model_error, before)
+    posterior = _confirmed(posterior, runs, measurements, folder / CALIBRATION, engine)
     about = {key: first.attrs[key] for key in ("study", "title", "study_text", "study_sha256")}
-    found = found.assign_attrs(about | {"model_error": model_error})
-    write_netcdf(found, folder / "calibration.nc", "calibration")
-    return found
+    posterior = posterior.assign_attrs(about | {"model_error": model_error})
+    write_netcdf(posterior, folder / "calibration.nc", "calibration")
+    return posterior
 
 
 def _models(
     study: steps.AnyStudy, folder: Path, laws: Sequence[str]
 ) -> Iterator[tuple[str, steps.AnyStudy, Path]]:
     """Yield name, study and folder of each model: of each law listed, or else in the sample."""
-    drawn = _drawn(study)
-    laws = laws or tuple(drawn)
+    choice = _drawn(study)
+    laws = laws or tuple(choice)
     if not laws:
         yield "", study, folder
         return
@@ -108,13 +108,13 @@ def _models(
     for law in laws:
         if law not in LAWS:
             raise ValueError(f"contact = {law!r}: {unknown('contact law', law, LAWS)}")
-        if not drawn and law == impacts.sampling.fixed.get("contact", impacts.impact.contact):
+        if not choice and law == impacts.sampling.fixed.get("contact", impacts.impact.contact):
             yield law, study, folder
             continue
         data = read_mapping(study.text, str(study.path))
         if "contact" in impacts.sampling.parameters:
-            one = {"distribution": "fixed", "value": law}
-            data["sampling"]["parameters"]["contact"] = one
+            entry = {"distribution": "fixed", "value": law}
+            data["sampling"]["parameters"]["contact"] = entry
         else:
             data["impact"]["contact"] = law
         under = study_of_text(study.name, text_of(data), study.path)
@@ -123,23 +123,25 @@ def _models(
 
 def _drawn(study: steps.AnyStudy) -> dict[str, float]:
     """Return the contact laws that a sample draws, with their probabilities; else {}."""
-    given = study.sampling.parameters.get("contact")
-    drawn = given.arguments() if isinstance(given, Choice) else {"values": (), "weights": ()}
-    return dict(zip(drawn["values"], drawn["weights"], strict=True))
+    parameter = study.sampling.parameters.get("contact")
+    arguments = (
+        parameter.arguments() if isinstance(parameter, Choice) else {"values": (), "weights": ()}
+    )
+    return dict(zip(arguments["values"], arguments["weights"], strict=True))
 
 
 def _solved(study: steps.AnyStudy, folder: Path, engine: Engine) -> xr.Dataset:
     path = folder / "runs.nc"
-    found = read_netcdf(path, "runs") if path.exists() else None
-    if found is None or found.attrs.get("study_sha256") != study.sha256:
+    runs = read_netcdf(path, "runs") if path.exists() else None
+    if runs is None or runs.attrs.get("study_sha256") != study.sha256:
         folder.mkdir(parents=True, exist_ok=True)
         steps.run(study, path, engine)
-        found = read_netcdf(path, "runs")
-    return found
+        runs = read_netcdf(path, "runs")
+    return runs
 
 
 def _confirmed(
-    found: xr.Dataset,
+    posterior: xr.Dataset,
     runs: dict[str, xr.Dataset],
     measurements: Sequence[Measurement],
     folder: Path,
@@ -149,7 +151,7 @@ def _confirmed(
 
     Raises ValueError where these are further off than on the runs held out, or no run answers.
     """
-    draws = found.isel(draw=slice(RUNS))
+    draws = posterior.isel(draw=slice(RUNS))
     square, answered = np.zeros(len(measurements)), np.zeros(len(measurements), int)
     solved = 0
     for name in runs:
@@ -158,37 +160,46 @@ def _confirmed(
             continue
         sample = in_order(runs[name])
         stated = [
-            {key: value for key, value in one.conditions.items() if key in listed(sample, "varied")}
-            for one in measurements
+            {
+                key: value
+                for key, value in measurement.conditions.items()
+                if key in listed(sample, "varied")
+            }
+            for measurement in measurements
         ]
-        for conditions in {json.dumps(each): each for each in stated}.values():
+        for conditions in {json.dumps(item): item for item in stated}.values():
             answers = execute(_design(sample, mine, conditions), folder / CONFIRMING / name, engine)
             solved += count
-            for at, one in enumerate(measurements):
-                if stated[at] == conditions:
-                    ours = usable(answers, one.quantity).values[0]
-                    error = (ours - mine["draw_predicted"].values[:, at]) ** 2
-                    square[at] += np.nansum(error)
-                    answered[at] += np.isfinite(error).sum()
+            for row, measurement in enumerate(measurements):
+                if stated[row] == conditions:
+                    ours = usable(answers, measurement.quantity).values[0]
+                    error = (ours - mine["draw_predicted"].values[:, row]) ** 2
+                    square[row] += np.nansum(error)
+                    answered[row] += np.isfinite(error).sum()
     if lacking := [
-        one.quantity for one, n in zip(measurements, answered, strict=True) if n < RUNS / 2
+        measurement.quantity
+        for measurement, n in zip(measurements, answered, strict=True)
+        if n < RUNS / 2
     ]:
         raise ValueError(
             f"{', '.join(dict.fromkeys(lacking))}: most runs at the posterior gave no answer, so "
             "that nothing confirms it: sample another range"
         )
     error = np.sqrt(square / answered)
-    ratio = error / np.maximum(found["surrogate_error"], 0.1 * found["measured_uncertainty"] / 2)
-    for at in np.flatnonzero(ratio > OFF)[:1]:
-        one = measurements[at]
+    ratio = error / np.maximum(
+        posterior["surrogate_error"], 0.1 * posterior["measured_uncertainty"] / 2
+    )
+    for row in np.flatnonzero(ratio > OFF)[:1]:
+        measurement = measurements[row]
         raise ValueError(
-            f"{one.quantity}: at the posterior the surrogate is off by {error[at]:.3g} {one.units},"
-            f" {float(ratio[at]):.2g} times its stated error: draw more runs, or narrower ranges"
+            f"{measurement.quantity}: at the posterior the surrogate is off by {error[row]:.3g} "
+            f"{measurement.units}, {float(ratio[row]):.2g} times its stated error: "
+            "draw more runs, or narrower ranges"
         )
-    words = "root mean squared difference of surrogate and solver at draws of the posterior"
+    long_name = "root mean squared difference of surrogate and solver at draws of the posterior"
     missing = RUNS - answered, {"long_name": "draws without an answer"}
-    return found.assign(
-        confirmed_error=("measurement", error, {"long_name": words}),
+    return posterior.assign(
+        confirmed_error=("measurement", error, {"long_name": long_name}),
         confirmed_missing=("measurement", *missing),
         confirmed_runs=((), solved, {"long_name": "runs solved at draws of the posterior"}),
     )
@@ -198,12 +209,14 @@ def _design(sample: xr.Dataset, draws: xr.Dataset, conditions: Mapping[str, obje
     """Return the design of one run per draw, of all else as in the sample."""
     count = draws.sizes["draw"]
     beside = [name for name, values in sample.coords.items() if set(values.dims) - {"run"}]
-    some = sample.isel(run=np.arange(count) % sample.sizes["run"])
-    some = some.drop_vars([*some.data_vars, *beside]).assign_coords(run=np.arange(count))
+    selection = sample.isel(run=np.arange(count) % sample.sizes["run"])
+    selection = selection.drop_vars([*selection.data_vars, *beside]).assign_coords(
+        run=np.arange(count)
+    )
     for name in listed(sample, "varied"):
         if name in conditions:
             values = np.full(count, float(str(conditions[name])))
         else:
             values = draws["draws"].sel(parameter=name).values
-        some = some.assign_coords({name: ("run", values, sample[name].attrs)})
-    return some.assign_attrs(histories=0, profiles=0)
+        selection = selection.assign_coords({name: ("run", values, sample[name].attrs)})
+    return selection.assign_attrs(histories=0, profiles=0)

@@ -115,11 +115,11 @@ class Estimate:
             needed = f"needs about {time(self.seconds)} of one core for {self.runs:,} runs"
             exceeded.append((self.slow, f"{needed}, which exceeds the limit of {time(MOST_TIME)}"))
         if self.memory > MEMORY_LIMIT:
-            needed, there = f"needs about {amount(self.memory)} of memory", amount(MEMORY_LIMIT)
-            exceeded.append((self.large, f"{needed}, which exceeds the {there} of this machine"))
+            needed, limit = f"needs about {amount(self.memory)} of memory", amount(MEMORY_LIMIT)
+            exceeded.append((self.large, f"{needed}, which exceeds the {limit} of this machine"))
         if self.disk > self.free:
-            needed, there = f"needs about {amount(self.disk)} of disk", amount(self.free)
-            exceeded.append((self.large, f"{needed}, which exceeds the {there} available"))
+            needed, limit = f"needs about {amount(self.disk)} of disk", amount(self.free)
+            exceeded.append((self.large, f"{needed}, which exceeds the {limit} available"))
         way_out = "see --dry-run, or run it anyway with --force (Python: estimate(), force=True)"
         return [Problem(self.file, key, f"{reason}; {way_out}") for key, reason in exceeded]
 
@@ -132,15 +132,17 @@ def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estima
     one; the largest run is sought at the extremes of parameters. Pilot runs of `auto` and the
     analysis are not included. Raises StudyError where a sampled run is impossible.
     """
-    there = next(each for each in (folder, *folder.resolve().parents) if each.exists())
-    own = sum(each.st_size for each in file_stats(folder.rglob("*")))
+    existing = next(
+        ancestor for ancestor in (folder, *folder.resolve().parents) if ancestor.exists()
+    )
+    own = sum(stat.st_size for stat in file_stats(folder.rglob("*")))
     file, doubted = str(study.path), []
     until = study.sampling.until if isinstance(study.sampling, Sobol) else None
     runs = max(study.sampling.runs, until.runs if until else 0)
     parameters = len(study.sampling.varied)
     if isinstance(study, FunctionStudy):
         sampled, largest, largest_run = np.full(1, _FUNCTION), _FUNCTION, {}
-        kept, held, working = parameters + 2, parameters + 2, 0.0
+        stored, held, working = parameters + 2, parameters + 2, 0.0
         slow = large = "sampling"
     else:
         model: Any = SimpleNamespace(table=case_table, work=work, memory=memory, usual=_usual)
@@ -154,20 +156,24 @@ def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estima
         sampled, largest = costs / A_SECOND, float(model.work(end)[0]) / A_SECOND
         history = study.store.samples * study.store.histories
         profile = int(end["nodes"][0] * end["points"][0]) * study.store.profiles
-        kept = parameters + len(RESPONSES) + 2 + len(HISTORIES) * history + len(PROFILES) * profile
+        stored = (
+            parameters + len(RESPONSES) + 2 + len(HISTORIES) * history + len(PROFILES) * profile
+        )
         held = max(1, history, profile)
         working = workers * float(model.memory(np.append(cases, end)).max())
         slow, large = _drivers(study, model, end, runs)
-        found = implausibilities(extremes((study.impact, study.discretisation), study.sampling))
-        doubted = [Problem(file, key_of(each.name, study.sampling), each.reason) for each in found]
+        doubts = implausibilities(extremes((study.impact, study.discretisation), study.sampling))
+        doubted = [
+            Problem(file, key_of(doubt.name, study.sampling), doubt.reason) for doubt in doubts
+        ]
     answers = _IN_MEMORY * _NUMBER * runs * float(held + parameters)
     return Estimate(
         file=file,
         runs=runs,
         seconds=max(float(sampled.mean()) * runs, largest),
         memory=_PROGRAM + answers + runs * _PER_RUN + working,
-        disk=_ON_DISK * _NUMBER * runs * float(kept),
-        free=float(disk_usage(there).free + own),
+        disk=_ON_DISK * _NUMBER * runs * float(stored),
+        free=float(disk_usage(existing).free + own),
         largest=largest,
         largest_run=largest_run,
         slow=slow,
@@ -205,8 +211,8 @@ def _cost_sample(study: Study) -> dict[str, Array]:
     if isinstance(sampling, Sample):
         number = min(study.sampling.runs, _MOST)
         return {
-            name: given.quantile(random.uniform(_TAIL, 1 - _TAIL, number))
-            for name, given in sampling.varied.items()
+            name: distribution.quantile(random.uniform(_TAIL, 1 - _TAIL, number))
+            for name, distribution in sampling.varied.items()
         }
     values = {name: np.array(listed) for name, listed in sampling.parameters.items()}
     if study.sampling.runs <= _MOST:
@@ -229,15 +235,19 @@ def _largest_run(
 ) -> dict[str, Value]:
     """Return the largest run: that of the sample, each parameter taken to its costliest end."""
     sampling = study.sampling
-    found = {name: column[int(np.argmax(cost))].item() for name, column in sample.items()}
-    for name in found:
-        given = sampling.varied[name]
+    values = {name: column[int(np.argmax(cost))].item() for name, column in sample.items()}
+    for name in values:
+        distribution = sampling.varied[name]
         if isinstance(sampling, Grid):
-            ends = list(given) if isinstance(given[0], str) else [min(given), max(given)]
+            ends = (
+                list(distribution)
+                if isinstance(distribution[0], str)
+                else [min(distribution), max(distribution)]
+            )
         elif name in sampling.words:
-            ends = list(given.values)
+            ends = list(distribution.values)
         else:
-            ends = given.quantile(np.array([_TAIL, 1 - _TAIL])).tolist()
-        columns = {key: [value] * len(ends) for key, value in found.items()} | {name: ends}
-        found[name] = ends[int(np.argmax(model.work(_cases(study, model, columns))))]
-    return found
+            ends = distribution.quantile(np.array([_TAIL, 1 - _TAIL])).tolist()
+        columns = {key: [value] * len(ends) for key, value in values.items()} | {name: ends}
+        values[name] = ends[int(np.argmax(model.work(_cases(study, model, columns))))]
+    return values

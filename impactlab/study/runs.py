@@ -86,13 +86,13 @@ def open_answers(
     """
     paths = shard_files(shards.folder)
     shard_of, row_of = np.full(index.size, -1), np.zeros(index.size, dtype=int)
-    kept: dict[Path, Shard] = {}
+    pool: dict[Path, Shard] = {}
     with ExitStack() as stack:
-        opened = partial(_open_shard, kept=kept, stack=stack)
-        for at, path in enumerate(paths):
+        opened = partial(_open_shard, open_shards=pool, stack=stack)
+        for position, path in enumerate(paths):
             with opened(path) as shard:
                 requested, runs = index.find(shard.read(KEYS))
-            shard_of[runs], row_of[runs] = at, np.flatnonzero(requested)
+            shard_of[runs], row_of[runs] = position, np.flatnonzero(requested)
         if (index.spread(shard_of) < 0).any():
             raise OSError(f"{shards.folder}: shards disappeared while they were read: {_AGAIN}")
         index.spread(row_of)
@@ -125,13 +125,13 @@ def open_answers(
 
 
 @contextmanager
-def _open_shard(path: Path, kept: dict[Path, Shard], stack: ExitStack) -> Iterator[Shard]:
+def _open_shard(path: Path, open_shards: dict[Path, Shard], stack: ExitStack) -> Iterator[Shard]:
     """Open a shard, or take one that is kept open. Raises OSError where it is damaged."""
     try:
-        if path not in kept and len(kept) < _OPEN:
-            kept[path] = stack.enter_context(closing(Shard(path)))
-        if path in kept:
-            yield kept[path]
+        if path not in open_shards and len(open_shards) < _OPEN:
+            open_shards[path] = stack.enter_context(closing(Shard(path)))
+        if path in open_shards:
+            yield open_shards[path]
         else:
             with closing(Shard(path)) as shard:
                 yield shard
@@ -181,13 +181,13 @@ def status(design: xr.Dataset, shards_folder: Path) -> Status:
         index.done[runs] = True
         bits[runs] = columns["status"][requested]
     failures = work.solver.failures(design)
-    times = [each.st_mtime for each in file_stats(shard_files(shards.folder))]
+    times = [stat.st_mtime for stat in file_stats(shard_files(shards.folder))]
     return Status(
         runs=index.size,
         done=int(np.count_nonzero(index.spread(index.done))),
         failed=int(np.count_nonzero(index.spread(bits) & failures)),
         age=time.time() - max(times) if times else None,
-        size=sum(each.st_size for each in file_stats(shards_folder.rglob("*"))),
+        size=sum(stat.st_size for stat in file_stats(shards_folder.rglob("*"))),
         holder=holder(shards_folder),
     )
 
@@ -196,9 +196,9 @@ def file_stats(paths: Iterable[Path]) -> Iterator[os.stat_result]:
     """Yield what the system says of the files among these paths; not of one that disappeared."""
     for path in paths:
         with suppress(FileNotFoundError):
-            found = path.stat()
-            if S_ISREG(found.st_mode):
-                yield found
+            stat = path.stat()
+            if S_ISREG(stat.st_mode):
+                yield stat
 
 
 def removable_files(folder: Path, designs: Collection[xr.Dataset] | None) -> dict[Path, str]:
@@ -208,22 +208,22 @@ def removable_files(folder: Path, designs: Collection[xr.Dataset] | None) -> dic
     those of another solver: only a search tells which would be needed again. A shard stays as long
     as one of its runs is needed, or it cannot be read.
     """
-    wanted: dict[Path, list[Array]] = {}
+    needed: dict[Path, list[Array]] = {}
     for name in SOLVERS if designs is None else ():
-        wanted[Shards(folder, OutputSpec(0, False), solver_named(name).version).folder] = []
+        needed[Shards(folder, OutputSpec(0, False), solver_named(name).version).folder] = []
     for design in designs or ():
         work = Work.of(design)
         shards = Shards(folder, work.output, work.solver.version)
-        wanted.setdefault(shards.folder, []).append(work.keys)
-    found: dict[Path, str] = {}
+        needed.setdefault(shards.folder, []).append(work.keys)
+    reasons: dict[Path, str] = {}
     for place in folder.glob("*/"):
-        found |= dict.fromkeys(unfinished_files(place), "is unfinished")
-        found |= dict.fromkeys(place.glob(f"*{DAMAGED}"), "was damaged and set aside")
+        reasons |= dict.fromkeys(unfinished_files(place), "is unfinished")
+        reasons |= dict.fromkeys(place.glob(f"*{DAMAGED}"), "was damaged and set aside")
         for path in shard_files(place):
-            if place not in wanted:
-                found[path] = "belongs to another version of the solver, or another output"
+            if place not in needed:
+                reasons[path] = "belongs to another version of the solver, or another output"
             elif designs:
                 sound = sound_runs(path)
-                if sound and not any(np.isin(sound[0], each).any() for each in wanted[place]):
-                    found[path] = "holds no run of the study"
-    return {path: why for path, why in sorted(found.items()) if path.is_file()}
+                if sound and not any(np.isin(sound[0], keys).any() for keys in needed[place]):
+                    reasons[path] = "holds no run of the study"
+    return {path: why for path, why in sorted(reasons.items()) if path.is_file()}

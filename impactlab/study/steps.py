@@ -60,16 +60,16 @@ def recommend(study: Study, path: Path, engine: Engine, wishes: Auto | None = No
     """Write to `path` (resolution.nc), and return, the dataset of recommendation.recommend."""
     from impactlab.study.adaptive import recommendation
 
-    found = recommendation.recommend(study, path.with_name(TRIALS), engine, wishes)
-    write_netcdf(found, path, "resolution")
-    return found
+    recommendations = recommendation.recommend(study, path.with_name(TRIALS), engine, wishes)
+    write_netcdf(recommendations, path, "resolution")
+    return recommendations
 
 
 def resolved(
     study: AnyStudy,
     folder: Path,
     engine: Engine | None = None,
-    tell: Tell = lambda found: None,
+    tell: Tell = lambda resolution: None,
 ) -> AnyStudy | None:
     """Return the study with its discretisation, found by pilot runs where it is `auto`.
 
@@ -82,19 +82,19 @@ def resolved(
     from impactlab.solver.jit import SOURCES_HASH
     from impactlab.study.adaptive.recommendation import apply_recommendation
 
-    file, found = folder / RESOLUTION, None
+    file, resolution = folder / RESOLUTION, None
     if file.exists():
         try:
-            found = read_netcdf(file, "resolution")
+            resolution = read_netcdf(file, "resolution")
         except ValueError as error:
             log.warning("%s; the pilot runs are solved again", error)
     made_for = {"study_sha256": study.sha256, "kernels_sha256": SOURCES_HASH}
-    if found is None or not made_for.items() <= found.attrs.items():
+    if resolution is None or not made_for.items() <= resolution.attrs.items():
         if engine is None:
             return None
-        found = recommend(study, file, engine)
-    tell(found)
-    return apply_recommendation(study, found)
+        resolution = recommend(study, file, engine)
+    tell(resolution)
+    return apply_recommendation(study, resolution)
 
 
 def run(
@@ -102,14 +102,14 @@ def run(
     path: Path,
     engine: Engine,
     *,
-    drawn: xr.Dataset | None = None,
+    runs: xr.Dataset | None = None,
     force: bool = False,
     replace: bool = False,
-    tell: Tell = lambda found: None,
+    tell: Tell = lambda resolution: None,
 ) -> None:
     """Price a study, resolve its discretisation, draw and solve its runs; write them to `path`.
 
-    drawn: its design, where it is drawn already. force: whatever it costs. replace: whatever study
+    runs: its design, where it is drawn already. force: whatever it costs. replace: whatever study
     has results there. tell: of `resolved`.
 
     Raises StudyError where a limit is exceeded, for wrong measurements, and as `resolved` and
@@ -120,7 +120,7 @@ def run(
     from impactlab.study.schema.measurements import read_measurements
 
     source = study_file(study, path.parent)
-    if drawn is not None and (file := drawn.attrs.get("study_file")):
+    if runs is not None and (file := runs.attrs.get("study_file")):
         source = study_file(changed(study, path=study.path.parent / file), path.parent)
     if not replace:
         check_unclaimed(study, path, source)
@@ -132,9 +132,9 @@ def run(
         log.warning("%s", problem)
     if (exceeded := cost.exceeded()) and not force:
         raise StudyError(*exceeded)
-    if drawn is None:
-        drawn = design(declared or resolved(study, path.parent, engine, tell) or study)
-    solve(drawn.assign_attrs(study_file=source), path, engine)
+    if runs is None:
+        runs = design(declared or resolved(study, path.parent, engine, tell) or study)
+    solve(runs.assign_attrs(study_file=source), path, engine)
 
 
 def solve(samples: xr.Dataset, path: Path, engine: Engine) -> None:
@@ -188,10 +188,10 @@ def status(study: AnyStudy, folder: Path) -> Status | None:
         if attrs.get("study_sha256") == declared.sha256 and "until_reason" in attrs:
             last = attrs["base_samples"]  # at which it stopped growing
     for stage in stages(design(declared)):
-        found = status_of(stage, folder / SHARDS)
-        if found.done < found.runs or stage.attrs.get("base_samples") == last:
+        status = status_of(stage, folder / SHARDS)
+        if status.done < status.runs or stage.attrs.get("base_samples") == last:
             break
-    return changed(found, written=written)
+    return changed(status, written=written)
 
 
 @contextmanager
@@ -207,14 +207,14 @@ def removable(studies: Path, results: Path) -> Iterator[dict[Path, str]]:
         raise FileNotFoundError(f"{studies}: no study files (*.yaml) there: nothing was removed")
     kinds = (SHARDS, TRIALS, REFINEMENT)
     with ExitStack() as locks:
-        found: dict[Path, str] = {}
+        reasons: dict[Path, str] = {}
         places = {path for kind in kinds for path in results.glob(f"*/{kind}")}
         places |= {lock.parent for lock in results.glob(f"*/{CALIBRATION}/**/lock")}
         for shards in sorted(places):
             locks.enter_context(locked(shards))
             home = results / shards.relative_to(results).parts[0]
-            found |= _stale(studies / f"{home.name}.yaml", shards, home)
-        yield found
+            reasons |= _stale(studies / f"{home.name}.yaml", shards, home)
+        yield reasons
 
 
 def _stale(file: Path, shards: Path, home: Path) -> dict[Path, str]:
@@ -251,15 +251,15 @@ def evidence(study: AnyStudy, runs: Path) -> dict[str, Path]:
 
     They hold what pilot runs of `auto` found, and `refine` of these very runs.
     """
-    found = {}
+    evidence = {}
     resolution, refinement = runs.with_name(RESOLUTION), runs.with_name(f"{REFINEMENT}.nc")
     if isinstance(study, Study) and study.auto:
-        found = {"resolution": resolution} if resolution.exists() else {}
+        evidence = {"resolution": resolution} if resolution.exists() else {}
     if refinement.exists():
-        with opened(refinement, "refinement") as made, opened(runs, "runs") as solved:
-            if identity(solved) in made.attrs["made_from"].split():
-                found["refinement"] = refinement
-    return found
+        with opened(refinement, "refinement") as refined, opened(runs, "runs") as solved:
+            if identity(solved) in refined.attrs["made_from"].split():
+                evidence["refinement"] = refinement
+    return evidence
 
 
 def analyse_runs(
@@ -286,24 +286,26 @@ def analyse_runs(
         if refinement:
             check_source(evidence["refinement"], refinement, solved, runs)
         sources = solved, *evidence.values()
-        found = analyse(solved, **evidence)
+        analysis = analyse(solved, **evidence)
         if "measurements" in solved.attrs:
             files = listed(solved, "measurements")
-            measured = [each for file in files for each in read_measurements(file, solved)]
-            found = found.merge(compared(solved, found, measured))
-        write_netcdf(found, path, "analysis", *sources)
+            measured = [
+                measurement for file in files for measurement in read_measurements(file, solved)
+            ]
+            analysis = analysis.merge(compared(solved, analysis, measured))
+        write_netcdf(analysis, path, "analysis", *sources)
         for name in ("indices.csv", "indices.nc", "distribution.csv", "surrogate.nc"):
             path.with_name(name).unlink(missing_ok=True)  # perhaps another study's
-        if indices := sensitivity_variables(found):
+        if indices := sensitivity_variables(analysis):
             with replaced(path.with_name("indices.csv"), indices.nbytes) as unfinished:
-                write_csv(found, unfinished)
+                write_csv(analysis, unfinished)
             write_netcdf(indices, path.with_name("indices.nc"), "indices", *sources)
-        if "quantile" in found:
+        if "quantile" in analysis:
             with replaced(path.with_name("distribution.csv")) as unfinished:
-                distribution.write_csv(found, unfinished)
-        if surrogates := packed(solved, found):
+                distribution.write_csv(analysis, unfinished)
+        if surrogates := packed(solved, analysis):
             write_netcdf(surrogates, path.with_name("surrogate.nc"), "surrogate", *sources)
-    return found
+    return analysis
 
 
 def check(verification: Verification) -> xr.Dataset:
@@ -330,5 +332,5 @@ def failure(outcomes: Sequence[Outcome]) -> str:
         failed, total = len(outcome.failures), len(outcome.finding.comparisons)
         counted = f"{failed} of {total} comparisons" if total else "it compared nothing"
         reasons.append(f"{outcome.name}: {outcome.reason or counted}")
-    told = f"verification failed in {len(reasons)} of {len(outcomes)} checks"
-    return f"{told} ({'; '.join(reasons)})" if reasons else ""
+    message = f"verification failed in {len(reasons)} of {len(outcomes)} checks"
+    return f"{message} ({'; '.join(reasons)})" if reasons else ""
