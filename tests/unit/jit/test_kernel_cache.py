@@ -156,9 +156,10 @@ def test_a_file_half_written_by_a_killed_process_is_not_read(call: Start, tmp_pa
 SOLVE = """
 import hashlib
 import impactlab as il
+from impactlab.simulate import run_dataset
 from impactlab.solver.leapfrog import kernel_of
 grid = il.Discretisation(nodes=21, points=5)
-run = il.simulate(il.paper_impact(12.0), grid, duration=1e-3)
+run = run_dataset(il.paper_impact(12.0), grid, duration=1e-3)
 bits = b"".join(run[name].values.tobytes() for name in sorted(run.variables))
 print(hashlib.sha256(bits).hexdigest(), len(kernel_of(0, 0).stats.cache_hits))
 """

@@ -14,6 +14,7 @@ from impactlab.figures.calibration import calibration
 from impactlab.figures.data import drawn
 from impactlab.files import read_netcdf
 from impactlab.report.calibration import sentences
+from impactlab.simulate import run_dataset
 from impactlab.study import calibration as of_study
 
 TRUTH = {"rate": 0.6, "start": 5.4}
@@ -221,7 +222,7 @@ def test_the_law_that_made_the_data_is_found(tmp_path, monkeypatch):
     text = STUDY.replace("METHOD", "pawn\n  samples: 200").replace("VALUES", RANGE)
     Path("steel.yaml").write_text(text)
     grid = il.Discretisation(nodes=21, points=5, scheme="modal")
-    truth = il.simulate(il.paper_impact("5 m/s", "thornton"), grid, duration="0.3 ms")
+    truth = run_dataset(il.paper_impact("5 m/s", "thornton"), grid, duration=0.3e-3)
     given = [
         {"quantity": name, "value": float(truth[name])}
         | {"standard_uncertainty": 0.01 * float(truth[name])}

@@ -11,6 +11,7 @@ import pytest
 from scipy.optimize import brentq
 
 import impactlab as il
+from impactlab.simulate import run_dataset
 from impactlab.solver.contact import LAWS, axis_lift, finite_element
 from impactlab.solver.contact.history import CONTACT, Pair, load
 from impactlab.solver.contact.stronge import yield_indentation
@@ -64,7 +65,7 @@ def test_a_softer_sphere_takes_the_dent_and_lifts_nothing():
 @pytest.mark.long  # a kernel of its own is compiled
 def test_permanent_indentation_of_a_strip_is_dent_and_lift():
     impact = replace(il.corrected_impact(5.0), contact_prestress="ignored")
-    run = il.simulate(impact, il.Discretisation(nodes=101), duration="0.25 ms")
+    run = run_dataset(impact, il.Discretisation(nodes=101), duration=0.25e-3)
     bodies = effective_modulus(impact), impact.sphere.radius, impact.beam.material.yield_stress, nu
 
     def missed(delta):
