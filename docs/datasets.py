@@ -11,9 +11,10 @@ from tempfile import TemporaryDirectory
 import xarray as xr
 
 import impactlab as il
-from impactlab.analysis.sensitivity import METHODS
+from impactlab.analysis.catalogue import ANALYSES
+from impactlab.methods import SAMPLES
 from impactlab.model.parameters import PARAMETERS
-from impactlab.variables import ANALYSES, FLAGS
+from impactlab.variables import FLAGS
 
 GRID = il.Discretisation(nodes=21, scheme="modal")
 SIZES = {"sobol": {"base_samples": 64}, "morris": {"trajectories": 16}, "fast": {"samples": 1200}}
@@ -77,7 +78,7 @@ def _page(study: partial[il.Study]) -> Iterator[str]:
     yield from _section("Study.run", runs, STORED)
     yield from _section("Study.design", grid.design(), "The coordinates of the runs.")
     yield "## analyse\n\nAn analysis of all responses, by its name in `analyses`.\n"
-    samples = {method: _ishigami(study, method) for method in METHODS}
+    samples = {method: _ishigami(study, method) for method in SAMPLES}
     yield from _coordinates(indices)
     yield from _analyses([runs, runs.rename(nodes="element_size"), draws], samples)
     yield "### Numerical uncertainty\n\nFrom `resolution` and `refinement`.\n"

@@ -22,7 +22,9 @@ Its sampling
     Grid                           all combinations of values
     Sobol, Fast                    shares of the variance
     Morris                         elementary effects
-    Delta, Pawn, Regression        from one Latin hypercube
+    Delta, Pawn, RbdFast, Regression
+                                   from given data: a Latin hypercube
+    Latin                          several of these four at once
     Uniform, LogUniform, Normal, TruncatedNormal, Lognormal, Triangular
     Choice                         one of several words
 

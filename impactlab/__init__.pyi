@@ -4,6 +4,22 @@ from .analysis.surrogate import load_surrogate as load_surrogate
 from .api import Study as Study
 from .api import calibrate as calibrate
 from .api import compare as compare
+from .methods.delta import Delta as Delta
+from .methods.distributions import Choice as Choice
+from .methods.distributions import Lognormal as Lognormal
+from .methods.distributions import LogUniform as LogUniform
+from .methods.distributions import Normal as Normal
+from .methods.distributions import Triangular as Triangular
+from .methods.distributions import TruncatedNormal as TruncatedNormal
+from .methods.distributions import Uniform as Uniform
+from .methods.fast import Fast as Fast
+from .methods.grid import Grid as Grid
+from .methods.latin import Latin as Latin
+from .methods.morris import Morris as Morris
+from .methods.pawn import Pawn as Pawn
+from .methods.rbd_fast import RbdFast as RbdFast
+from .methods.regression import Regression as Regression
+from .methods.sobol import Sobol as Sobol
 from .model.discretisation import Discretisation as Discretisation
 from .model.impact import Beam as Beam
 from .model.impact import Impact as Impact
@@ -16,21 +32,7 @@ from .model.plausibility import TooShortWarning as TooShortWarning
 from .report.answer import answers as answers
 from .simulate import simulate as simulate
 from .simulate import simulate_many as simulate_many
-from .study.errors import StudyError as StudyError
-from .study.schema.written import Choice as Choice
-from .study.schema.written import Delta as Delta
-from .study.schema.written import Fast as Fast
-from .study.schema.written import Grid as Grid
-from .study.schema.written import Lognormal as Lognormal
-from .study.schema.written import LogUniform as LogUniform
-from .study.schema.written import Morris as Morris
-from .study.schema.written import Normal as Normal
-from .study.schema.written import Pawn as Pawn
-from .study.schema.written import Regression as Regression
-from .study.schema.written import Sobol as Sobol
-from .study.schema.written import Triangular as Triangular
-from .study.schema.written import TruncatedNormal as TruncatedNormal
-from .study.schema.written import Uniform as Uniform
 from .study.solvers.own import Function as Function
+from .validation.errors import StudyError as StudyError
 
 __version__: str

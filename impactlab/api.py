@@ -13,18 +13,19 @@ import xarray as xr
 from impactlab.analysis.analyse import analyse
 from impactlab.analysis.measurements import compared
 from impactlab.files import check_suffix, checked, opened, read_netcdf, replaced
+from impactlab.methods.sampling import Sampling
 from impactlab.model.checks import integer
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.parameters import PARAMETERS
 from impactlab.model.quantities import Quantity
 from impactlab.study import REFINEMENT, RESOLUTION, steps
-from impactlab.study.errors import Problem, StudyError
 from impactlab.study.schema import files, yaml_file
 from impactlab.study.schema.measurements import Given, read_measurements
-from impactlab.study.schema.written import _Sampling, text_of
+from impactlab.study.schema.written import content_of
 from impactlab.study.solvers.own import Function, register, solver_name
 from impactlab.study.stored import check_unclaimed
+from impactlab.validation.errors import Problem, StudyError
 from impactlab.variables import FLAGS, VARIABLES
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ class Study:
     ----------
     title : str
         Title, one line.
-    sampling : Grid, Sobol, Fast, Morris, Delta, Pawn, Regression or mapping
+    sampling : Grid, Sobol, Fast, Morris, Latin, Delta, Pawn, RbdFast, Regression or mapping
         Varied parameters and their values or distributions.
     impact : Impact or mapping, optional
         Impact that all runs start from.
@@ -62,7 +63,7 @@ class Study:
         `simulate`) that return a number, or a `Function` with a unit: `{"momentum": function,
         "peak_force": "peak_force"}`. Of a model `function`, the names of its results.
     analyses : sequence of str or str, optional
-        Names (impactlab.variables.ANALYSES); by default all.
+        Names (impactlab.analysis.catalogue.ANALYSES); by default all.
     limits : mapping of str to Quantity, optional
         Limits by name of the response: `analyse` gives the probability that a run exceeds them.
     store : mapping, optional
@@ -126,7 +127,7 @@ class Study:
         self,
         *,
         title: str,
-        sampling: _Sampling | Mapping[str, Any],
+        sampling: Sampling | Mapping[str, Any],
         impact: Impact | Mapping[str, Any] | None = None,
         duration: Quantity = None,
         discretisation: Discretisation | Mapping[str, Any] | str | None = None,
@@ -169,7 +170,9 @@ class Study:
             "analysis": analysis,
             "measurements": measurements,
         }
-        self._set(files.study_of_text(_name(title, name), text_of(keys), Path("Study")), results)
+        self._set(
+            files.study_of_content(_name(title, name), content_of(keys), Path("Study")), results
+        )
 
     def _set(self, declared: steps.AnyStudy, results: str | Path) -> None:
         self.declared = declared
@@ -263,7 +266,7 @@ class Study:
         StudyError
             If the discretisation is still to be found.
         """
-        from impactlab.study.sampling.design import design
+        from impactlab.study.design import design
 
         return design(steps.resolved(self.declared, self.folder) or self.declared)
 

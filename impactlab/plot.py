@@ -28,8 +28,9 @@ from impactlab.figures import (
     style,
 )
 from impactlab.figures.curves import plan
-from impactlab.study.errors import unknown
+from impactlab.methods import INDICES
 from impactlab.study.schema.measurements import read_measurements
+from impactlab.validation.errors import unknown
 
 __all__ = [
     "delta",
@@ -242,8 +243,9 @@ class _Draw(Protocol):
     ) -> Any: ...
 
 
-def _indices(name: str, family: measures.Family, size: str) -> _Draw:
-    """Return the function `name`, which draws one family; size: of the sample in its example."""
+def _indices(name: str, size: str) -> _Draw:
+    """Return the function that draws the indices `name`; size: of the sample in its example."""
+    family = INDICES[name].family
 
     def draw(analysis: xr.Dataset, response: str | None = None, *, ax: Axes | None = None) -> Any:
         if not family.given(analysis):
@@ -306,11 +308,11 @@ def _indices(name: str, family: measures.Family, size: str) -> _Draw:
     return draw
 
 
-sobol = _indices("sobol", measures.SOBOL, "base_samples=64")
-delta = _indices("delta", measures.DELTA, "samples=128")
-pawn = _indices("pawn", measures.PAWN, "samples=128")
-regression = _indices("regression", measures.REGRESSION, "samples=128")
-morris = _indices("morris", measures.MORRIS, "trajectories=16")
+sobol = _indices("sobol", "base_samples=64")
+delta = _indices("delta", "samples=128")
+pawn = _indices("pawn", "samples=128")
+regression = _indices("regression", "samples=128")
+morris = _indices("morris", "trajectories=16")
 
 
 def _current(ax: Axes | None) -> Axes:

@@ -24,7 +24,7 @@ from impactlab.analysis.importance import Posterior, modes, normalised, posterio
 from impactlab.analysis.measurements import COVERAGE, Measurement, same
 from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
 from impactlab.analysis.surrogate.stored import Surrogate
-from impactlab.model.distributions import quantile
+from impactlab.methods.distributions import distribution_of
 from impactlab.types import Floats
 
 MOST = 5  # largest number of calibrated parameters
@@ -150,11 +150,11 @@ class Model:
         """Return the parameters at points of the prior's cube, in SI units, (points, free)."""
         low, high = self.limits.T
         unit = low + (high - low) * points
-        distributions = [self.surrogate.distribution(name) for name in self.free]
+        arguments = [self.surrogate.distribution(name) for name in self.free]
         return np.array(
             [
-                quantile(distribution, u)
-                for distribution, u in zip(distributions, unit.T, strict=True)
+                distribution_of(attributes).quantile(u)
+                for attributes, u in zip(arguments, unit.T, strict=True)
             ]
         ).T
 

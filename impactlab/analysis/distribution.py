@@ -23,11 +23,11 @@ import scipy  # its stats are loaded when first used
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.analysis.responses import Sample, labels, listed, usable
-from impactlab.analysis.sensitivity import sobol
-from impactlab.analysis.verdicts import Verdict, flagged, names
+from impactlab.analysis.responses import labels, usable
+from impactlab.methods import NO_DISTRIBUTION, independent_runs, sobol
+from impactlab.methods.runs import Sample, listed
 from impactlab.types import Floats
-from impactlab.variables import NO_DISTRIBUTION
+from impactlab.verdicts import Verdict, flagged, names
 
 PROBABILITIES = (0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99)
 """Probabilities below the quantiles."""
@@ -54,7 +54,7 @@ def applies(runs: xr.Dataset) -> bool:
 def drawn_outputs(runs: xr.Dataset, response: str) -> Floats:
     """Return a response of the draws, (draws,), in SI units, NaN where it is missing."""
     sample = Sample.of(runs.assign_attrs(responses=response))  # whatever else they lack
-    return np.asarray(usable(sample.runs, response).values[0][sample.draws])
+    return np.asarray(usable(sample.runs, response).values[0][independent_runs(sample)])
 
 
 def limits(runs: xr.Dataset) -> dict[str, float]:
@@ -76,7 +76,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     sample = Sample.of(runs)
     if sample.settings["method"] == "sobol":
         sobol.check(sample)
-    rows, level, bounds = sample.draws, sample.confidence, limits(runs)
+    rows, level, bounds = independent_runs(sample), sample.confidence, limits(runs)
     columns = {name: sample.runs[name].values[rows] for name in sample.parameters if bounds}
     entries: list[dict[str, Any]] = []
     verdicts = []

@@ -16,9 +16,9 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.responses import usable
-from impactlab.analysis.verdicts import Verdict, flagged
 from impactlab.model.parameters import REFINEMENTS
 from impactlab.variables import FAILED, MARKED, reasons
+from impactlab.verdicts import Verdict, flagged
 
 COVERAGE = 2.0
 """Coverage factor of every expanded uncertainty in datasets: about 95 % of a normal error."""

@@ -15,14 +15,15 @@ import xarray as xr
 
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL, estimate
-from impactlab.analysis.responses import Sample, in_order, listed, usable
-from impactlab.analysis.sensitivity import sobol
+from impactlab.analysis.responses import usable
 from impactlab.analysis.sensitivity.imputation import imputed
-from impactlab.analysis.sensitivity.method import half_width
-from impactlab.analysis.sensitivity.sobol import Outputs, estimates
-from impactlab.analysis.sensitivity.verdict import still, tail
-from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
+from impactlab.methods import sobol
+from impactlab.methods.estimators import half_width
+from impactlab.methods.runs import Sample, in_order, listed
+from impactlab.methods.saltelli import Outputs, estimates
+from impactlab.methods.verdict import still, tail
 from impactlab.types import Floats
+from impactlab.verdicts import ROUND_OFF, Verdict, flagged
 
 ORDERS = ("first_order", "total_order")
 _MEASURED = (

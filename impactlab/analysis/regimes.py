@@ -10,7 +10,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.analysis.responses import Sample, usable
+from impactlab.analysis.responses import usable
+from impactlab.methods import SAMPLES, independent_runs
+from impactlab.methods.morris import Morris
+from impactlab.methods.runs import Sample
 from impactlab.types import Floats
 
 FEWEST, SHARE = 5, 0.01
@@ -28,9 +31,8 @@ def of_runs(runs: xr.Dataset, response: str) -> Floats:
 
     There are none where the runs are not a study's sample.
     """
-    needed = {"method", "varied"} | (
-        {"base_samples"} if runs.attrs.get("method") == "sobol" else set()
-    )
+    method = SAMPLES.get(str(runs.attrs.get("method")))
+    needed = {"method", "varied"} | ({method.blocks} if method and method.blocks else set())
     if "run" not in runs.dims or not needed <= runs.attrs.keys():
         return np.array([])
     sample = Sample.of(runs.assign_attrs(responses=response))  # whatever else they lack
@@ -43,9 +45,9 @@ def of_sample(sample: Sample, outputs: Floats) -> Floats:
     outputs: (runs,), in the order of `run`. There are none in a Morris sample, whose levels leave
     gaps of their own, nor where it is words that lead from one regime to the other.
     """
-    if sample.settings["method"] == "morris":
+    if sample.settings["method"] == Morris.name():
         return np.array([])
-    rows = sample.draws
+    rows = independent_runs(sample)
     values = outputs[rows]
     middles = cuts(values)
     if not middles.size or not sample.words:

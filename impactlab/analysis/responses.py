@@ -1,34 +1,14 @@
-"""The runs of a study under analysis: responses, what is missing and why, and samples."""
+"""The responses of a study's runs, and what is missing of them and why."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
-import scipy  # its stats are loaded when first used
 import xarray as xr
-from numpy.typing import NDArray
 
-from impactlab.model.distributions import CHOICE
-from impactlab.types import Floats
+from impactlab.methods.runs import listed
 from impactlab.variables import status_bits
-
-
-def listed(runs: xr.Dataset, attribute: str) -> list[str]:
-    """Return a list attribute as a list: netCDF gives a list of one back as a plain string."""
-    return [str(entry) for entry in np.atleast_1d(runs.attrs[attribute])]
-
-
-def correlations(runs: xr.Dataset) -> list[tuple[str, str, float]]:
-    """Return pairs of parameters and the rank correlation that they were drawn with."""
-    if "correlated" not in runs.attrs:
-        return []
-    ranks = np.atleast_1d(runs.attrs["rank_correlations"]).tolist()
-    pairs = [entry.split() for entry in listed(runs, "correlated")]
-    return [(name, other, float(rank)) for (name, other), rank in zip(pairs, ranks, strict=True)]
 
 
 def usable(runs: xr.Dataset, response: str | None = None) -> xr.DataArray:
@@ -73,145 +53,3 @@ def labels(runs: xr.Dataset, *names: Any) -> dict[str, Any]:
             [str(runs[name].attrs.get(key, "")) for name in of],
         )
     return coordinates
-
-
-def in_order(runs: xr.Dataset) -> xr.Dataset:
-    """Return a sample in the order of `run`: as it is, not read, where it has that order."""
-    numbers = runs["run"].values
-    return runs if (numbers[1:] >= numbers[:-1]).all() else runs.sortby("run")
-
-
-@dataclass(frozen=True)
-class Sample:
-    """A sample, and the settings of its indices.
-
-    groups: the group of each parameter; empty where each stands for itself. runs: in their order,
-    perhaps not read. settings: the attributes of the runs.
-    """
-
-    parameters: tuple[str, ...]
-    groups: tuple[str, ...]
-    runs: xr.Dataset
-    settings: Mapping[Any, Any]
-
-    @classmethod
-    def of(cls, runs: xr.Dataset) -> Sample:
-        """Return the sample of runs, from their coordinates and attributes."""
-        return cls(
-            parameters=tuple(listed(runs, "varied")),
-            groups=tuple(listed(runs, "groups")) if "groups" in runs.attrs else (),
-            runs=in_order(runs),
-            settings=runs.attrs,
-        )
-
-    @property
-    def size(self) -> int:
-        """The number of runs."""
-        return int(self.runs.sizes["run"])
-
-    @cached_property
-    def inputs(self) -> Floats:
-        """The parameters of all runs, (runs, parameter): held in memory once used; see `column`."""
-        return np.stack([self.column(name) for name in self.parameters], axis=1)
-
-    @cached_property
-    def words(self) -> dict[str, list[str]]:
-        """The words of each parameter that is drawn among words, by its name."""
-        attrs = {name: self.runs[name].attrs for name in self.parameters}
-        choices = {
-            n: entry["values"] for n, entry in attrs.items() if entry.get("distribution") == CHOICE
-        }
-        return {name: [str(word) for word in np.atleast_1d(choices[name])] for name in choices}
-
-    def column(self, parameter: str) -> Floats:
-        """Return a parameter in all runs, (runs,), in SI units; of words, their places in `words`.
-
-        The places only tell words apart: they have no order. Raises ValueError for other words.
-        """
-        values = self.runs[parameter].values
-        if parameter not in self.words:
-            return np.asarray(values, float)
-        choices = self.words[parameter]
-        places = sum(place * (values == word) for place, word in enumerate(choices, 1))
-        if not np.all(places):
-            raise ValueError(f"the runs of {self.study} hold words of {parameter} not drawn from")
-        return np.asarray(places, float) - 1
-
-    def rows(self, runs: NDArray[np.int64]) -> Floats:
-        """Return the parameters of these runs, (runs, parameter); one column is read at a time."""
-        return np.stack([self.column(name)[runs] for name in self.parameters], axis=1)
-
-    @property
-    def memberships(self) -> tuple[str, ...]:
-        """The factor of each parameter: its group, or its own name."""
-        return self.groups or self.parameters
-
-    @property
-    def factors(self) -> tuple[str, ...]:
-        """Names of the indices: groups in order of appearance, or parameters."""
-        return tuple(dict.fromkeys(self.memberships))
-
-    @property
-    def confidence(self) -> float:
-        """Confidence level of the intervals, in (0, 1)."""
-        return float(self.settings.get("confidence", 0.95))
-
-    @property
-    def resamples(self) -> int:
-        """Number of bootstrap resamples: 200 give the width of an interval to 5 %."""
-        return int(self.settings.get("resamples", 200))
-
-    @property
-    def study(self) -> str:
-        """The study's name, for messages."""
-        return f"the study {str(self.settings.get('study', '?'))!r}"
-
-    @property
-    def draws(self) -> NDArray[np.int64]:
-        """Numbers of the runs that are draws of their own: of a Saltelli sample, A and B."""
-        rows = np.arange(self.size)
-        if self.settings["method"] != "sobol":
-            return rows
-        size = self.size // self.number("base_samples")
-        return np.concatenate([rows[::size], rows[size - 1 :: size]])
-
-    def number(self, setting: str) -> int:
-        """Return a whole number that the method needs. Raises ValueError where it is absent."""
-        if setting not in self.settings:
-            raise ValueError(
-                f"the runs of {self.study} have no attribute {setting}: solve the study again"
-            )
-        return int(self.settings[setting])
-
-    def expect(self, runs: int, origin: str) -> None:
-        """Raise ValueError unless the sample has this number of runs; origin: where it is from."""
-        if self.size != runs:
-            raise ValueError(
-                f"{self.study} has {self.size} runs, but {origin} make {runs}: solve it again"
-            )
-
-    def ordered(self) -> None:
-        """Raise ValueError where words are drawn for a method that needs an order of the values."""
-        if self.words:
-            raise ValueError(
-                f"{self.study}: the method {self.settings['method']!r} needs an order of the "
-                f"values, and {next(iter(self.words))} takes words: use sobol, delta or pawn"
-            )
-
-    def ungrouped(self) -> None:
-        """Raise ValueError where groups are stated for a method that has none."""
-        if self.groups:
-            raise ValueError(
-                f"{self.study}: the method {self.settings['method']!r} has no groups: remove them, "
-                "or use sobol or morris"
-            )
-
-    def rng(self, *purpose: str) -> np.random.Generator:
-        """Return the random stream of a purpose, such as a response, independent of all others."""
-        key = tuple("\0".join(purpose).encode())
-        return np.random.default_rng(np.random.SeedSequence(self.number("seed"), spawn_key=key))
-
-    def half_width(self, replicates: Floats) -> Floats:
-        """Return half-widths of intervals from replicates (resamples, ...), NaN where one is."""
-        quantile = float(scipy.stats.norm.ppf(0.5 + self.confidence / 2))
-        return np.asarray(quantile * replicates.std(axis=0, ddof=1))

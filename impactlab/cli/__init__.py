@@ -21,7 +21,7 @@ def main() -> None:
     try:
         app()
     except (ValueError, OSError) as error:
-        from impactlab.study.errors import printable
+        from impactlab.validation.errors import printable
 
         logger = logging.getLogger("impactlab")
         logger.error("%s", "\n".join(map(printable, str(error).split("\n"))))

@@ -40,7 +40,7 @@ def _check(suffixes: tuple[str, ...]) -> Callable[[typer.CallbackParam, Path | N
 
 def chosen(option: str, text: str, names: Collection[str]) -> tuple[str, ...]:
     """Return the names of a list "a,b", none of "". Raises ValueError naming the option."""
-    from impactlab.study.errors import unknown
+    from impactlab.validation.errors import unknown
 
     selected = tuple(filter(None, text.replace(",", " ").split()))
     for name in selected:

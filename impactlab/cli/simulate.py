@@ -94,7 +94,7 @@ def _checked(base: str, values: dict[str, Value]) -> tuple[Impact, Discretisatio
     from impactlab.model.impact import BASES
     from impactlab.model.parameters import with_values
     from impactlab.model.plausibility import implausibilities, numbers
-    from impactlab.study.validity import refusal
+    from impactlab.validation.refusals import refusal
 
     if base not in BASES:
         raise ValueError(f"--base = {base!r}: must be one of {', '.join(BASES)}")

@@ -80,8 +80,8 @@ def design(
     from impactlab.files import write_netcdf
     from impactlab.report.console import print_recommendation
     from impactlab.study import steps
+    from impactlab.study.design import design as design_of
     from impactlab.study.engine import Engine
-    from impactlab.study.sampling.design import design as design_of
     from impactlab.study.schema.files import read_study
     from impactlab.study.stored import check_unclaimed, study_file
 
@@ -125,9 +125,9 @@ def run(
     from impactlab.files import read_netcdf
     from impactlab.report.console import print_estimate, print_recommendation, print_solved
     from impactlab.study import steps
+    from impactlab.study.design import study_of_design
     from impactlab.study.engine import Engine, read_profile
     from impactlab.study.estimate import estimate
-    from impactlab.study.sampling.design import study_of_design
     from impactlab.study.schema.files import read_study
 
     stored = read_netcdf(design_file, "design") if design_file.suffix == ".nc" else None
@@ -255,8 +255,8 @@ def go(
     For a verification: verify, figures and report. Solved runs are not solved again.
     """
     from impactlab.cli import results
+    from impactlab.methods.sobol import Sobol
     from impactlab.study import steps
-    from impactlab.study.sampling.samples import Sobol
     from impactlab.study.schema.files import read_any
     from impactlab.study.schema.study import Study, Verification
 

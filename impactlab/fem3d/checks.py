@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from impactlab.fem3d.wing import MODEL, SIZES
+from impactlab.methods.grid import Grid
 from impactlab.solver import outputs
-from impactlab.study.sampling.grid import Grid
 from impactlab.study.schema.checks import Reasons, key_of, size_keys, values_of
 from impactlab.study.schema.study import StudyFile
 

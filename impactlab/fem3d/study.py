@@ -18,7 +18,6 @@ import numpy as np
 import xarray as xr
 from numpy.lib.recfunctions import require_fields
 
-from impactlab.analysis.responses import listed
 from impactlab.fem3d.plan import MOST_TIME, cost_of
 from impactlab.fem3d.solver import Cost, quarter_mesh
 from impactlab.fem3d.solver import solve as solve_alone
@@ -27,6 +26,7 @@ from impactlab.fem3d.solver.jit import COMPILER
 from impactlab.fem3d.solver.responses import plastic_reach
 from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
 from impactlab.fem3d.wing import SIZES, SOLID, VARIABLES
+from impactlab.methods.runs import listed
 from impactlab.model import cost
 from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS

@@ -17,6 +17,7 @@ from impactlab.figures import (
     single_runs,
 )
 from impactlab.figures.record import Figure
+from impactlab.methods import FAMILIES
 
 ANSWERS = (
     grids.contact_laws,
@@ -44,9 +45,11 @@ INDICES = (
     *map(indices.index_convergence, measures.SOBOL.measures),
     indices.indices_over_time,
     indices.morris_plane,
-    indices.index_bars(measures.DELTA),
-    indices.index_bars(measures.PAWN),
-    indices.index_bars(measures.REGRESSION),
+    *(
+        indices.index_bars(family)
+        for family in FAMILIES
+        if family not in (measures.SOBOL, measures.MORRIS)
+    ),
     indices.index_bars(measures.SURROGATE),
     samples.surrogate_validation,
     samples.failure_shares,

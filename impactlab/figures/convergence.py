@@ -12,7 +12,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.analysis.verdicts import ROUND_OFF, TOLERANCE
 from impactlab.figures import access, curves, labels, record, responses_grid, scales, style
 from impactlab.figures.access import known, responses, usable
 from impactlab.figures.curves import Choice, Plan, plan
@@ -23,6 +22,7 @@ from impactlab.model.cost import node_steps
 from impactlab.model.parameters import REFINEMENTS
 from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.types import Floats
+from impactlab.verdicts import ROUND_OFF, TOLERANCE
 
 _DIFFERENCE = "Relative difference (–)"
 _FEWEST = 3

@@ -8,23 +8,22 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
 from impactlab.analysis.distribution import cumulative, drawn_outputs, limits, significance
-from impactlab.analysis.responses import Sample
-from impactlab.analysis.verdicts import ROUND_OFF
 from impactlab.figures import access, labels, record, responses_grid, scales, style
 from impactlab.figures.access import is_sample, responses, usable
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.record import Figure
 from impactlab.figures.samples import along_parameters, places, ticks
+from impactlab.methods import SAMPLES, independent_runs
+from impactlab.methods.runs import Sample
 from impactlab.types import Floats
+from impactlab.verdicts import ROUND_OFF
 
 _WARNING = style.COLOURS[1]
 _FEW = 10  # number of distinct values up to which each has a bar
 _MOSTLY = 0.5
 """Share of the runs from which on a common value is left out, as it would hide the rest."""
 _MOST = 300  # largest number of steps drawn of a curve
-_EVEN = ("sobol", "delta", "pawn", "regression")
-"""Methods whose draws spread more evenly than random ones."""
 
 
 @record.figure(
@@ -99,7 +98,8 @@ def _jumps(runs: xr.Dataset) -> list[str]:
 
 def spread_evenly(runs: xr.Dataset) -> str:
     """Return the clause on intervals of draws that are no random ones; "" for others."""
-    if runs.attrs.get("method") not in _EVEN:
+    method = SAMPLES.get(str(runs.attrs.get("method")))
+    if method is None or not method.even:
         return ""
     return ", which is on the safe side, for the draws spread more evenly than random ones"
 
@@ -180,7 +180,7 @@ def exceedance(response: str) -> Figure:
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per parameter."""
         sample = Sample.of(runs)
-        outputs, rows = drawn_outputs(runs, response), sample.draws
+        outputs, rows = drawn_outputs(runs, response), independent_runs(sample)
         statistics, least = analysis.sel(response=response), significance(analysis)
 
         def draw(ax: Axes, column: xr.DataArray) -> None:

@@ -17,9 +17,11 @@ from numpy.typing import NDArray
 
 from impactlab.figures import access, labels, measures, record, responses_grid, scales, style
 from impactlab.figures.labels import Display, display
-from impactlab.figures.measures import MORRIS, Family, Measure, analysed, parameters
+from impactlab.figures.measures import MORRIS, analysed, parameters
 from impactlab.figures.panel import name_places
 from impactlab.figures.record import Figure
+from impactlab.methods import verdict_name
+from impactlab.methods.record import Family, Measure
 from impactlab.types import Floats
 from impactlab.variables import status_bits
 
@@ -50,7 +52,7 @@ def index_bars(family: Family) -> Figure:
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per response, a row per parameter (largest first), a bar per measure."""
         shown = family.measures_in(analysis)
-        ranked = abs(analysis[measures.ranking(family, analysis).name])
+        ranked = abs(analysis[family.ranked_by(analysis).name])
         largest = ranked.max([dim for dim in ranked.dims if dim != "parameter"]).fillna(-1.0)
         analysis = analysis.isel(parameter=np.argsort(-largest.values, kind="stable"))
         height = 10 + max(5.2, 2.4 * len(shown)) * analysis.sizes["parameter"]
@@ -92,6 +94,7 @@ def bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
     Pairs of measures are dark and light; the verdict is drawn where it is a warning.
     """
     shown, listed = family.measures_in(analysis), parameters(analysis)
+    judged = verdict_name(analysis, lambda record: record.family == family)
     rows, count = np.arange(len(listed)), len(shown)
     colours = style.COLOURS if count < 4 else ("#0072B2", "#56B4E9", "#D55E00", "#E69F00")
     for number, (measure, colour) in enumerate(zip(shown, colours[:count], strict=True)):
@@ -109,9 +112,9 @@ def bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
             ax.vlines(ends, len(rows) - 0.5, -0.5, color=colour, linestyle=dashes, linewidth=0.9)
     ax.axvline(0.0, color="0.15", linewidth=0.6)
     if np.isfinite(analysis[shown[0].name].sel(response=response)).any():
-        responses_grid.write_verdict(ax, analysis, _VERDICT, response, sound=False)
+        responses_grid.write_verdict(ax, analysis, judged, response, sound=False)
     else:
-        verdict = access.verdict(analysis, _VERDICT, response)
+        verdict = access.verdict(analysis, judged, response)
         style.remark(ax, f"undefined:\n{verdict.words if verdict else 'no reason is given'}")
     name_places(ax, "y", list(map(labels.parameter, listed)))
     ax.tick_params(axis="y", length=0)

@@ -15,7 +15,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from impactlab import wings
-from impactlab.model.distributions import CHOICE
+from impactlab.methods import METHODS
+from impactlab.methods.distributions import CHOICE
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.types import Floats
@@ -36,14 +37,6 @@ _STEPS: dict[str, tuple[tuple[float, float, str], ...]] = {
 """By `units` attribute: (smallest magnitude, factor from SI, symbol), the largest step first."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _RULES = {"lobatto": "Gauss-Lobatto", "legendre": "Gauss-Legendre", "layers": "uniform layers"}
-_METHODS = {
-    "sobol": "Sobol sample",
-    "morris": "Morris trajectories",
-    "fast": "extended FAST curves",
-    "delta": "Latin hypercube for delta indices",
-    "pawn": "Latin hypercube for PAWN indices",
-    "regression": "Latin hypercube for regression",
-}
 _FIXED = (
     "velocity",
     "contact",
@@ -108,7 +101,7 @@ def parameter(name: str) -> str:
 
 def method(name: str) -> str:
     """Return the name of a sampling method in words: "grid", "Sobol sample"."""
-    return _METHODS.get(name, name)
+    return METHODS[name].label if name in METHODS else name
 
 
 def sentence(text: str) -> str:

@@ -8,45 +8,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.analysis.verdicts import ROUND_OFF
 from impactlab.figures.access import known, responses
+from impactlab.methods import FAMILIES, indices_of, morris, sobol
+from impactlab.methods.record import Family, Measure
 from impactlab.types import Floats
-
-
-@dataclass(frozen=True)
-class Measure:
-    """A variable of the analysis on (response, parameter), and its name in words.
-
-    optional: shown where it is given.
-    """
-
-    name: str
-    label: str
-    optional: bool = False
-
-
-@dataclass(frozen=True)
-class Family:
-    """Measures of one method that are shown side by side.
-
-    figure: name of their figure; title: heads it and the tables. axis: label of their axis.
-    meaning: of the numbers, in a sentence or two. shares: True for shares of a whole.
-    """
-
-    figure: str
-    title: str
-    measures: tuple[Measure, ...]
-    axis: str
-    meaning: str
-    shares: bool = True
-
-    def given(self, analysis: xr.Dataset) -> bool:
-        """Return whether the analysis has every measure that is not optional."""
-        return all(measure.name in analysis for measure in self.measures if not measure.optional)
-
-    def measures_in(self, analysis: xr.Dataset) -> list[Measure]:
-        """Return the measures that the analysis has."""
-        return [measure for measure in self.measures if measure.name in analysis]
+from impactlab.verdicts import ROUND_OFF
 
 
 @dataclass(frozen=True)
@@ -93,14 +59,7 @@ class Index:
         return list(zip(best.tolist(), worst.tolist(), strict=True))
 
 
-SOBOL = Family(
-    "sobol_indices",
-    "Sobol indices",
-    (Measure("first_order", "first order"), Measure("total_order", "total order", optional=True)),
-    "Share of the variance (–)",
-    "Share of the variance of each response that comes from a parameter alone (first order) and "
-    "with all its interactions (total order), over the ranges of this study.",
-)
+SOBOL, MORRIS = sobol.FAMILY, morris.FAMILY
 SURROGATE = Family(
     "surrogate_indices",
     "Indices of the surrogate beside the sampled ones",
@@ -113,48 +72,14 @@ SURROGATE = Family(
     "Share of the variance (–)",
     "The same shares of the variance from the runs themselves and from a surrogate fitted to them: "
     "where they differ by more than their intervals, trust neither.",
+    ranking="surrogate_total_order",
 )
-DELTA = Family(
-    "delta_indices",
-    "Delta indices",
-    (Measure("delta", "delta"), Measure("delta_first_order", "first order", optional=True)),
-    "Index (–)",
-    "Delta: half the area by which the density of a response changes, on average, once the "
-    "parameter is known (Borgonovo); beside it the first-order index from the same runs.",
-)
-PAWN = Family(
-    "pawn_indices",
-    "PAWN indices",
-    (Measure("pawn", "median"), Measure("pawn_maximum", "largest", optional=True)),
-    "Kolmogorov-Smirnov distance (–)",
-    "Distance between the distribution of a response and the same with the parameter held in one "
-    "part of its range: median and largest over the parts (Pianosi and Wagener).",
-)
-REGRESSION = Family(
-    "regression_indices",
-    "Regression coefficients",
-    (Measure("regression", "of values"), Measure("rank_regression", "of ranks", optional=True)),
-    "Standardised coefficient (–)",
-    "Standard deviations by which a response rises with one standard deviation of the parameter, "
-    "in a linear fit of values and of ranks. They tell no more than the fit does: see R².",
-    shares=False,
-)
-MORRIS = Family(
-    "morris_plane",
-    "Elementary effects (Morris)",
-    (Measure("morris_mu_star", "mean of magnitudes"),),
-    "Mean of magnitudes µ*",
-    "How far a response moves, on average, when one parameter goes through its whole range (µ*), "
-    "and how much this depends on where the others are (σ).",
-    shares=False,
-)
-RANKED = (SOBOL, MORRIS, DELTA, PAWN, REGRESSION)
-"""Families that rank the parameters, each by one measure of theirs (`ranking`)."""
 
 
-def ranking(family: Family, analysis: xr.Dataset) -> Measure:
-    """Return the measure that ranks the parameters: the total order where given, else the first."""
-    return family.measures_in(analysis)[-1 if family in (SOBOL, SURROGATE) else 0]
+def families(runs: xr.Dataset, analysis: xr.Dataset) -> list[Family]:
+    """Return the families of measures in the analysis, first that of the indices named first."""
+    first = [record.family for record in indices_of(runs.attrs)]
+    return [family for family in dict.fromkeys([*first, *FAMILIES]) if family.given(analysis)]
 
 
 def analysed(runs: xr.Dataset, analysis: xr.Dataset, *needed: str) -> list[str]:

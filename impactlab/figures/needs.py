@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.verdicts import TOLERANCE
 from impactlab.figures import access, labels
 from impactlab.figures.access import usable
 from impactlab.figures.measures import analysed
 from impactlab.model.parameters import REFINEMENTS
+from impactlab.verdicts import TOLERANCE
 
 ORDERED = {dim: axis for dim, (axis, _) in REFINEMENTS.items() if dim != "points"}
 """Refined axes: the prefix of their variables in the analysis."""

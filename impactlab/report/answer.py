@@ -9,13 +9,13 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.analyse import analyse
-from impactlab.analysis.verdicts import TOLERANCE
 from impactlab.figures import access, labels, measures
 from impactlab.figures.access import design_dims, responses, usable
 from impactlab.figures.distributions import spread_evenly
 from impactlab.figures.labels import display
-from impactlab.figures.measures import MORRIS, RANKED, REGRESSION, SOBOL, Family, Index, analysed
+from impactlab.figures.measures import MORRIS, SOBOL, Index, analysed
 from impactlab.figures.needs import ORDERED, Needs, needed
+from impactlab.methods.record import Family
 from impactlab.report import measured
 from impactlab.report.cautions import beside
 from impactlab.report.distribution import limit_entries
@@ -28,6 +28,7 @@ from impactlab.report.sensitivity import (
     uncertainty,
     with_margin,
 )
+from impactlab.verdicts import TOLERANCE
 from impactlab.verification.finding import gravest_first
 from impactlab.verification.stored import unpacked
 
@@ -89,11 +90,9 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[
     """Return the entries of each line of `answers`, and what their numbers are."""
     if analysis is None:
         return _packed(_verification(runs), LINES), ""
-    if families := [
-        family for family in RANKED if family.given(analysis) and analysed(runs, analysis)
-    ]:
+    if (families := measures.families(runs, analysis)) and analysed(runs, analysis):
         findings = _ranking(runs, analysis, families[0])
-        kind = measures.ranking(families[0], analysis).label
+        kind = families[0].ranked_by(analysis).label
         note = f"{families[0].title}, {kind}, ± the half-width of the"
         note += f" {access.confidence(analysis)} interval. {shared(runs)}".rstrip()
     elif needs := needed(runs, analysis):
@@ -152,7 +151,7 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Ent
     """Return one entry per response: the parameters that matter, and whether to trust this."""
     names, shown = measures.parameters(analysis), analysed(runs, analysis)
     most = max(1, 4 - -(-len(shown) // LINES))  # named per response
-    measure = measures.ranking(family, analysis).name
+    measure = family.ranked_by(analysis).name
     findings: list[Entry] = []
     for name in shown:
         index = measures.index(analysis, measure, name)
@@ -165,8 +164,8 @@ def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Ent
                 text += _of_words(runs, names[number], name)
             if sizes[number] > _MATTERS * sizes.max():
                 listed.append(f"{labels.parameter(names[number])} {text}")
-        if listed and family is REGRESSION and "regression_r_squared" in analysis:
-            fit = float(analysis["regression_r_squared"].sel(response=name))
+        if listed and family.explained in analysis:
+            fit = float(analysis[family.explained].sel(response=name))
             listed[-1] += f" (R² of the fit: {labels.number(fit, 2)})"
         verdict = access.verdict(analysis, "sensitivity_verdict", name)
         if verdict and verdict.flag == "several_regimes":

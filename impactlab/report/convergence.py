@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 
 from impactlab import wings
-from impactlab.analysis.verdicts import TOLERANCE
 from impactlab.figures import access, labels
 from impactlab.figures.needs import Needs, finest, needed
 from impactlab.report.page import Cell, Row, Section, Table, largest
 from impactlab.types import Floats
+from impactlab.verdicts import TOLERANCE
 
 _ORDERS = (
     "The observed order, the grid convergence index (GCI) and the asymptotic ratio come from the "

@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.distribution import DistributionVerdict, significance
-from impactlab.analysis.responses import correlations
 from impactlab.figures import access, labels
 from impactlab.figures.distributions import exceedance, limited, spread_evenly
 from impactlab.figures.labels import Display, display
+from impactlab.methods.runs import correlations
 from impactlab.report.page import Cell, Row, Section, Table
 
 PERCENTILES = {"5th percentile": 0.05, "Median": 0.5, "95th percentile": 0.95}

@@ -16,6 +16,7 @@ from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
 from impactlab.analysis.surrogate.polynomials import orthonormal
 from impactlab.analysis.surrogate.stored import IMPRECISE
 from impactlab.figures import labels
+from impactlab.methods.distributions import distribution_of
 from impactlab.model.quantities import PREFIXED, symbol
 from impactlab.report.page import described, write_page
 
@@ -66,7 +67,7 @@ def _parameter(column: xr.DataArray, entry: xr.Dataset) -> dict[str, Any]:
 
     si: what a value there is multiplied by for the polynomials, which take SI units.
     """
-    unit, kind = labels.display(column), orthonormal(column.attrs)
+    unit, kind = labels.display(column), orthonormal(distribution_of(column.attrs))
     lowest, highest = (_short(entry[key].item() * unit.scale) for key in ("lowest", "highest"))
     # the ends of the range in few digits, rounded so that they do not leave it
     digits = 6 if highest - lowest > 1e-3 * max(abs(lowest), abs(highest)) else 12

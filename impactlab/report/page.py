@@ -20,10 +20,10 @@ import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from impactlab.figures import labels
-from impactlab.figures.measures import RANKED
 from impactlab.figures.needs import REFINED
 from impactlab.figures.record import listed
 from impactlab.files import identity, replaced
+from impactlab.methods import FAMILIES
 
 _PROVENANCE = {
     "created": "Solved",
@@ -42,7 +42,7 @@ _PROVENANCE = {
     "failed_runs": "Policy for failed runs",
 }
 _LEADING = (
-    *(family.figure for family in RANKED),
+    *(family.figure for family in FAMILIES),
     *(f"{axis}_convergence" for axis in dict.fromkeys(REFINED.values())),
     "parameter_effects",
 )

@@ -10,10 +10,11 @@ import xarray as xr
 
 from impactlab.analysis.distribution import drawn_outputs, filtered
 from impactlab.analysis.regimes import jumps, of_runs
-from impactlab.analysis.responses import Sample
 from impactlab.figures import labels
 from impactlab.figures.access import design_dims, is_sample, physical, responses, usable
 from impactlab.figures.labels import display
+from impactlab.methods import independent_runs
+from impactlab.methods.runs import Sample
 from impactlab.report.distribution import leading
 from impactlab.types import Floats
 
@@ -53,7 +54,7 @@ def _regimes(runs: xr.Dataset, name: str, middles: Floats) -> str:
 def _decisive(runs: xr.Dataset, name: str, apart: Floats) -> str:
     """Return the parameters that differ most between runs apart (1) and the others (0)."""
     sample = Sample.of(runs.assign_attrs(responses=name))
-    rows = sample.draws
+    rows = independent_runs(sample)
     columns = {key: sample.runs[key].values[rows] for key in sample.parameters}
     columns = {key: column for key, column in columns.items() if np.unique(column).size > 1}
     variables = {

@@ -14,19 +14,13 @@ from itertools import combinations
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.responses import correlations
 from impactlab.analysis.sensitivity.over_time import TimeVerdict
 from impactlab.figures import access, labels, measures
 from impactlab.figures.labels import display
-from impactlab.figures.measures import (
-    MORRIS,
-    RANKED,
-    SOBOL,
-    SURROGATE,
-    Family,
-    Measure,
-    analysed,
-)
+from impactlab.figures.measures import MORRIS, SOBOL, SURROGATE, analysed
+from impactlab.methods import indices_of, verdict_name
+from impactlab.methods.record import Family, Measure
+from impactlab.methods.runs import correlations
 from impactlab.report.page import Cell, Row, Section, Table, largest
 
 _COARSE = 0.02  # smallest half-width of shares given in whole per cent
@@ -62,7 +56,7 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
     """Yield the sections, from the ranking to the surrogate, that the analysis has data for."""
     if not analysed(runs, analysis):
         return
-    if families := [family for family in RANKED if family.given(analysis)]:
+    if families := measures.families(runs, analysis):
         lead = (
             "A rank is a range where intervals overlap; they are widened by the numerical error "
             f"where it is known. {shared(runs)}"
@@ -95,12 +89,7 @@ def shared(runs: xr.Dataset) -> str:
     if not (pairs := correlations(runs)):
         return ""
     joined = dict.fromkeys(name for first, second, _ in pairs for name in (first, second))
-    meaning = "the index of each includes what it shares with the others, and indices overlap"
-    if runs.attrs.get("method") == "regression":
-        meaning = (
-            "a coefficient is the effect of one while the others are held, and squares of "
-            "coefficients are no shares"
-        )
+    meaning = indices_of(runs.attrs)[0].family.if_correlated
     listed = labels.listing([labels.parameter(name) for name in joined])
     return f"The inputs are correlated ({listed}): {meaning}."
 
@@ -240,7 +229,7 @@ def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
 
 def _ranks(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
     """Return one row per response: the rank of each parameter, a range where intervals overlap."""
-    measure = measures.ranking(family, analysis)
+    measure = family.ranked_by(analysis)
     rows: list[Row] = []
     for name in analysed(runs, analysis):
         index, row = measures.index(analysis, measure.name, name), [named(analysis, name)]
@@ -281,13 +270,14 @@ def share(value: float, margin: float, error: float = 0.0) -> str:
 def index_tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Table]:
     """Return one table per measure: responses by parameters, index ± half-width; the dummy last."""
     tables = []
+    judged = verdict_name(analysis, lambda record: record.family == family)
     for measure in family.measures_in(analysis):
         dummy = f"dummy_{measure.name}"
         rows: list[Row] = []
         for name in analysed(runs, analysis):
             index = measures.index(analysis, measure.name, name)
             written = partial(in_units, runs[name]) if family is MORRIS else with_margin
-            row = [named(analysis, name)]
+            row = [named(analysis, name, judged)]
             columns = index.values, index.margins, index.significant, index.numerically_lost
             for value, margin, significant, lost in zip(*columns, strict=True):
                 kind, detail = "number" if significant else "muted", "below numerical error"
@@ -325,9 +315,9 @@ def _caption(title: str, analysis: xr.Dataset) -> str:
     return f"{title}, with half-widths of the {access.confidence(analysis)} intervals"
 
 
-def named(analysis: xr.Dataset, response: str) -> Cell:
-    """Return the response, with its verdict where that is a warning."""
-    return _judged(response, access.verdict(analysis, "sensitivity_verdict", response))
+def named(analysis: xr.Dataset, response: str, verdict: str = "sensitivity_verdict") -> Cell:
+    """Return the response, with its verdict of that name where it is a warning."""
+    return _judged(response, access.verdict(analysis, verdict, response))
 
 
 def _judged(name: str, verdict: access.Verdict | None) -> Cell:

@@ -11,12 +11,13 @@ import scipy  # its stats are loaded when first used
 import xarray as xr
 
 from impactlab import wings
-from impactlab.analysis.responses import correlations
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, design_dims, is_sample, names, responses, usable, varied
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.samples import scatter
+from impactlab.methods import NO_DISTRIBUTION
+from impactlab.methods.runs import correlations
 from impactlab.model.parameters import PARAMETERS
 from impactlab.report import distribution, measured, sensitivity
 from impactlab.report.answer import entries
@@ -25,7 +26,7 @@ from impactlab.report.convergence import convergence
 from impactlab.report.explorer import write_explorer
 from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
 from impactlab.report.regimes import regime_entries
-from impactlab.variables import NO_DISTRIBUTION, attributes
+from impactlab.variables import attributes
 
 _GRID_VALUES = 12  # a longer list of values of a grid is replaced by its range
 _FAILED_RUNS = 20  # largest number of failed runs listed one by one

@@ -13,21 +13,21 @@ import xarray as xr
 from impactlab.analysis import surrogate
 from impactlab.analysis.calibration import calibrated
 from impactlab.analysis.measurements import Measurement
-from impactlab.analysis.responses import in_order, listed, usable
+from impactlab.analysis.responses import usable
 from impactlab.analysis.surrogate.stored import Surrogate
 from impactlab.files import read_netcdf, write_netcdf
+from impactlab.methods.distributions import Choice
+from impactlab.methods.hypercube import Hypercube
+from impactlab.methods.runs import in_order, listed
+from impactlab.methods.sampling import RandomSample
 from impactlab.solver.contact import LAWS
 from impactlab.study import CALIBRATION, steps
 from impactlab.study.engine import Engine
-from impactlab.study.errors import Problem, StudyError, unknown
 from impactlab.study.execute import execute
-from impactlab.study.sampling.samples import Latin
-from impactlab.study.sampling.sections import Sample
-from impactlab.study.schema.files import of_impacts, study_of_text
+from impactlab.study.schema.files import of_impacts, study_of_content
 from impactlab.study.schema.measurements import Given, read_measurements
-from impactlab.study.schema.parameters import Choice
-from impactlab.study.schema.written import text_of
 from impactlab.study.schema.yaml_file import read_mapping
+from impactlab.validation.errors import Problem, StudyError, unknown
 
 CONFIRMING = "confirming"
 """Folder in that of calibration, of the runs that confirm."""
@@ -56,7 +56,7 @@ def calibrate(
     Raises StudyError where study or measurements are wrong, ValueError with every reason for which
     there is no posterior.
     """
-    if not isinstance(study.sampling, Sample):
+    if not isinstance(study.sampling, RandomSample):
         reason = "calibration needs a sample (any method but grid), whose ranges are the prior"
         raise StudyError(Problem(str(study.path), "sampling.method", reason))
     if categories := [name for name in study.sampling.words if name != "contact"]:
@@ -65,7 +65,7 @@ def calibrate(
             "weighed against each other)"
         )
         raise StudyError(Problem(str(study.path), f"sampling.parameters.{categories[0]}", reason))
-    if isinstance(study.sampling, Latin) and study.sampling.correlations:
+    if isinstance(study.sampling, Hypercube) and study.sampling.correlations:
         reason = f"{study.sampling.no_surrogate}: take them out"
         raise StudyError(Problem(str(study.path), "sampling.correlations", reason))
     models = list(_models(study, folder, laws))  # all of them right before one is solved
@@ -117,7 +117,7 @@ def _models(
             data["sampling"]["parameters"]["contact"] = entry
         else:
             data["impact"]["contact"] = law
-        under = study_of_text(study.name, text_of(data), study.path)
+        under = study_of_content(study.name, data, study.path)
         yield law, replace(under, path=Path(f"{study.name}_{law}.yaml")), folder / CALIBRATION / law
 
 

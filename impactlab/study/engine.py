@@ -19,8 +19,8 @@ from pydantic import Field
 from tornado.ioloop import PeriodicCallback
 from tornado.util import TimeoutError as TornadoTimeoutError
 
-from impactlab.study.schema.section import Section, validated
 from impactlab.study.schema.yaml_file import read_mapping, read_text
+from impactlab.validation.section import Section, validated
 
 if TYPE_CHECKING:
     from dask_jobqueue.slurm import SLURMCluster

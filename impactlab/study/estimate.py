@@ -12,6 +12,9 @@ from typing import Any
 import numpy as np
 from distributed.system import MEMORY_LIMIT
 
+from impactlab.methods.grid import Grid
+from impactlab.methods.sampling import RandomSample
+from impactlab.methods.sobol import Sobol
 from impactlab.model.cost import A_SECOND, memory, work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
@@ -19,14 +22,11 @@ from impactlab.model.parameters import PARAMETERS, Value, with_values
 from impactlab.model.plausibility import implausibilities
 from impactlab.model.quantities import amount, time
 from impactlab.simulate import case_table
-from impactlab.study.errors import Problem, StudyError
 from impactlab.study.netcdf import Array
 from impactlab.study.runs import BOUND_IT, file_stats
-from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.samples import Sobol
-from impactlab.study.sampling.sections import Sample
 from impactlab.study.schema.checks import extremes, further_models, key_of
 from impactlab.study.schema.study import FunctionStudy, Study
+from impactlab.validation.errors import Problem, StudyError
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 
 MOST_TIME = 30 * 86400.0
@@ -208,7 +208,7 @@ def _usual(case: Array, duration: float) -> Array:
 def _cost_sample(study: Study) -> dict[str, Array]:
     """Return varied parameters of some runs: all of a small grid, else _MOST, without a sampler."""
     sampling, random = study.sampling, np.random.default_rng(0)
-    if isinstance(sampling, Sample):
+    if isinstance(sampling, RandomSample):
         number = min(study.sampling.runs, _MOST)
         return {
             name: distribution.quantile(random.uniform(_TAIL, 1 - _TAIL, number))

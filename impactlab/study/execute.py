@@ -32,7 +32,7 @@ log = logging.getLogger(__name__)
 def open_runs(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterator[xr.Dataset]:
     """Solve the runs of a design that are not solved yet, and give all of them as a context.
 
-    design: see impactlab.study.sampling.design. Every finished batch is in `shards_folder` before
+    design: see impactlab.study.design. Every finished batch is in `shards_folder` before
     it is counted: interrupted studies resume where they stopped. Answers are read from there, one
     column at a time, when they are computed: memory holds about 40 bytes per run, and no other
     process works in the folder meanwhile.

@@ -27,10 +27,10 @@ from impactlab.files import (
     write_netcdf,
 )
 from impactlab.study import CALIBRATION, REFINEMENT, RESOLUTION, SHARDS, TRIALS
-from impactlab.study.errors import StudyError
 from impactlab.study.schema.study import Auto, FunctionStudy, Study, Verification
 from impactlab.study.schema.yaml_file import check_name
 from impactlab.study.stored import check_unclaimed, same_runs, study_file, write_runs
+from impactlab.validation.errors import StudyError
 
 if TYPE_CHECKING:
     from impactlab.study.engine import Engine
@@ -115,8 +115,8 @@ def run(
     Raises StudyError where a limit is exceeded, for wrong measurements, and as `resolved` and
     `solve`; ValueError as `check_unclaimed`.
     """
+    from impactlab.study.design import design
     from impactlab.study.estimate import estimate
-    from impactlab.study.sampling.design import design
     from impactlab.study.schema.measurements import read_measurements
 
     source = study_file(study, path.parent)
@@ -171,8 +171,8 @@ def status(study: AnyStudy, folder: Path) -> Status | None:
     It is that of the stage at which a growing sample stands. None while the discretisation has
     still to be found.
     """
+    from impactlab.study.design import design, stages
     from impactlab.study.runs import status as status_of
-    from impactlab.study.sampling.design import design, stages
     from impactlab.study.solvers import run_shape
 
     declared, runs = resolved(study, folder), folder / "runs.nc"
@@ -219,8 +219,8 @@ def removable(studies: Path, results: Path) -> Iterator[dict[Path, str]]:
 
 def _stale(file: Path, shards: Path, home: Path) -> dict[Path, str]:
     """Return a study's files to remove: none where it has no file; home: its folder of results."""
+    from impactlab.study.design import design, stages
     from impactlab.study.runs import removable_files
-    from impactlab.study.sampling.design import design, stages
     from impactlab.study.schema.files import read_study
 
     if not file.is_file():
@@ -275,9 +275,9 @@ def analyse_runs(
     from impactlab.analysis import distribution
     from impactlab.analysis.analyse import analyse
     from impactlab.analysis.measurements import compared
-    from impactlab.analysis.responses import listed
     from impactlab.analysis.sensitivity.indices import sensitivity_variables, write_csv
     from impactlab.analysis.surrogate import packed
+    from impactlab.methods.runs import listed
     from impactlab.study.schema.measurements import read_measurements
 
     given = {"resolution": resolution, "refinement": refinement}

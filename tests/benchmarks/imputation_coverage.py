@@ -14,10 +14,10 @@ import numpy as np
 import xarray as xr
 from functions import ishigami, names
 
-from impactlab.analysis.responses import Sample
-from impactlab.analysis.sensitivity import sobol
 from impactlab.analysis.sensitivity.imputation import imputed
-from impactlab.study.sampling.samples import REPLICATES, saltelli
+from impactlab.methods import sobol
+from impactlab.methods.runs import Sample
+from impactlab.methods.saltelli import REPLICATES, saltelli
 
 SEEDS = int(sys.argv[1]) if len(sys.argv) > 1 else 200
 BASE = int(sys.argv[2]) if len(sys.argv) > 2 else 64
@@ -48,7 +48,7 @@ def estimated(points, outputs, base_samples, seed):
     supplied = imputed(outputs, sample, "y")
     if supplied.refusal is not None:
         return None
-    indices = sobol.METHOD.estimate(supplied.outputs, sample, "y")
+    indices = sobol.INDICES.estimate(supplied.outputs, sample, "y")
     margins = [indices[f"{order}_interval"] + supplied.half_width for order in ORDERS]
     return np.array([indices[order] for order in ORDERS]), np.array(margins)
 

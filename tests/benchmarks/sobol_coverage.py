@@ -17,10 +17,10 @@ from functions import Case, g, ishigami, linear, names
 from rich.console import Console
 from rich.table import Table
 
-from impactlab.analysis.responses import Sample
-from impactlab.analysis.sensitivity import sobol, verdict
-from impactlab.analysis.sensitivity.verdict import SensitivityVerdict
-from impactlab.study.sampling.samples import REPLICATES, saltelli
+from impactlab.methods import sobol
+from impactlab.methods.runs import Sample
+from impactlab.methods.saltelli import REPLICATES, saltelli
+from impactlab.methods.verdict import SensitivityVerdict
 
 SEEDS = int(sys.argv[1]) if len(sys.argv) > 1 else 200
 SIZES = (16, 64, 256, 1024, 2048)
@@ -77,7 +77,7 @@ def estimated(case: Case, size: int, outputs: Any) -> dict[str, Any]:
     attrs |= {"second_order": 1, "replicates": REPLICATES}
     part = outputs[: size * (2 * len(set(case.groups)) + 2)]
     runs = xr.Dataset(coords={"run": np.arange(part.size)}, attrs=attrs)
-    found = sobol.METHOD.estimate(part, Sample.of(runs), "y")
+    found = sobol.INDICES.estimate(part, Sample.of(runs), "y")
     for name in ("second_order", "second_order_interval"):
         found[name] = found[name][np.triu_indices(len(found[name]), 1)]
     return found
@@ -101,7 +101,7 @@ def main() -> None:
                 cells[0].append(f"{(abs(errors) <= margins + 1e-9).mean(axis=0).min():.2f}")
                 cells[1].append(f"{np.sqrt((errors**2).mean(axis=0)).max():.3f}")
                 cells[2].append(f"{np.median(margins, axis=0).max():.3f}")
-            judged = [verdict.of_indices(found) for found in seeds]
+            judged = [sobol.INDICES.judge(found) for found in seeds]
             rates = [np.mean([SensitivityVerdict[kind] in v for v in judged]) for kind in VERDICTS]
             table.add_row(name, str(size), *map(" ".join, cells), *(f"{r:.3f}" for r in rates))
         for found in seeds:  # with all halves of the whole sample

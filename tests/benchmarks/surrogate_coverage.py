@@ -20,7 +20,7 @@ import xarray as xr
 import impactlab as il
 from impactlab.analysis import surrogate
 from impactlab.analysis.surrogate.stored import Surrogate
-from impactlab.model.distributions import arguments, cumulative, quantile
+from impactlab.methods.distributions import distribution_of
 from impactlab.simulate import case_table, solve
 
 NUMBER = int(sys.argv[1]) if len(sys.argv) > 1 else 200
@@ -28,14 +28,14 @@ RUNS = int(sys.argv[2]) if len(sys.argv) > 2 else 400
 POINTS = 21
 DESIGN = il.Study.from_yaml(Path(__file__).parents[2] / "studies/sobol.yaml").design()
 NAMES = list(DESIGN.attrs["varied"])
-DISTRIBUTIONS = [arguments(DESIGN[name].attrs) for name in NAMES]
+DISTRIBUTIONS = [distribution_of(DESIGN[name].attrs) for name in NAMES]
 SOLVED = ["peak_force", "contact_duration", "maximum_indentation", "maximum_deflection"]
 
 
 def inputs(unit):
     """Return the parameters in SI units where they have these probabilities."""
     pairs = zip(DISTRIBUTIONS, unit.T, strict=True)
-    return np.column_stack([quantile(distribution, column) for distribution, column in pairs])
+    return np.column_stack([distribution.quantile(column) for distribution, column in pairs])
 
 
 def responses(points):
@@ -74,7 +74,7 @@ def main():
     axes = np.full((len(NAMES), POINTS, len(NAMES)), 0.5)
     for i, distribution in enumerate(DISTRIBUTIONS):
         values = np.linspace(distribution["low"], distribution["high"], POINTS)
-        axes[i, :, i] = cumulative(distribution, values)
+        axes[i, :, i] = distribution.cumulative(values)
     unit = axes.reshape(-1, len(NAMES))
     exact = responses(inputs(unit))
     hits = {name: [] for name in exact}

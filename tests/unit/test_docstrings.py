@@ -13,10 +13,11 @@ import pytest
 from sphinx.ext.napoleon import Config, NumpyDocstring
 
 import impactlab as il
+from impactlab.validation.stated import Stated
 
 RETURNED = {
     "Estimate": "impactlab.study.estimate",
-    "Problem": "impactlab.study.errors",
+    "Problem": "impactlab.validation.errors",
     "Status": "impactlab.study.runs",
     "Surrogate": "impactlab.analysis.surrogate.stored",
 }
@@ -28,12 +29,16 @@ FIELD = re.compile(r"^:(param|type|ivar|vartype|raises|returns) ?([^:]*):(.*)$",
 
 
 def _public() -> dict[str, Any]:
-    """Return every public class, function, method and property by name."""
+    """Return every public class, function, method and property by name.
+
+    Sections of a study are for their constructors: their methods serve the package.
+    """
     things = {name: getattr(il, name) for name in dir(il)}
     things = {name: thing for name, thing in things.items() if not isinstance(thing, ModuleType)}
     things |= {name: getattr(import_module(module), name) for name, module in RETURNED.items()}
     for name, thing in list(things.items()):
-        things |= dict(_methods(name, thing) if isinstance(thing, type) else [])
+        is_open = isinstance(thing, type) and not issubclass(thing, Stated)
+        things |= dict(_methods(name, thing) if is_open else [])
     return things | {f"plot.{name}": getattr(il.plot, name) for name in il.plot.__all__}
 
 

@@ -12,12 +12,12 @@ import pytest
 from damaged_studies import VALID, damaged, exploding, raw_bytes, write
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
-from impactlab.study.errors import StudyError
+from impactlab.study.design import design
 from impactlab.study.estimate import estimate
-from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import read_any
 from impactlab.study.schema.study import FunctionStudy, Verification
 from impactlab.study.schema.yaml_file import LARGEST
+from impactlab.validation.errors import StudyError
 
 SECONDS = 20
 ROOM = 1 << 30

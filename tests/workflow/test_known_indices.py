@@ -13,9 +13,9 @@ from impactlab.figures.catalogue import applicable
 from impactlab.figures.draw import draw_all
 from impactlab.files import read_netcdf, write_netcdf
 from impactlab.report.study import write_report
+from impactlab.study.design import design
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import read_study
 from impactlab.variables import FAILURES
 
@@ -102,6 +102,12 @@ METHODS = {
     "delta": ("samples: 1000", {"delta"}, {"delta_indices"}),
     "pawn": ("samples: 1000", {"pawn"}, {"pawn_indices"}),
     "regression": ("samples: 1000", {"regression", "rank_regression"}, {"regression_indices"}),
+    "rbd_fast": ("samples: 1000", {"first_order"}, {"sobol_indices"}),
+    "latin": (
+        "samples: 1000\n  indices: [pawn, rbd_fast, delta]",
+        {"first_order", "delta", "pawn"},
+        {"sobol_indices", "delta_indices", "pawn_indices"},
+    ),
 }
 
 
@@ -191,8 +197,8 @@ def test_the_committed_study_states_what_is_known():
 
 
 def test_the_command_recommend_refuses_a_function():
-    from impactlab.study.errors import StudyError
     from impactlab.study.schema.files import read_impacts
+    from impactlab.validation.errors import StudyError
 
     with pytest.raises(StudyError, match="has no discretisation"):
         read_impacts(ROOT / "studies" / "ishigami.yaml")

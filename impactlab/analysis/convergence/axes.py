@@ -21,8 +21,8 @@ from impactlab.analysis.convergence.judgement import AxisVerdict, How, Judgement
 from impactlab.analysis.convergence.least_squares import Expansion
 from impactlab.analysis.convergence.richardson import Behaviour
 from impactlab.analysis.responses import usable
-from impactlab.analysis.verdicts import TOLERANCE, Verdict, flagged, verdict_variables
 from impactlab.types import Floats
+from impactlab.verdicts import TOLERANCE, Verdict, flagged, verdict_variables
 
 
 @dataclass(frozen=True)

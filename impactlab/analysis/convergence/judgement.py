@@ -28,8 +28,8 @@ from impactlab.analysis.convergence.richardson import (
     Estimate,
     relative,
 )
-from impactlab.analysis.verdicts import ROUND_OFF, TOLERANCE, Verdict
 from impactlab.types import Floats
+from impactlab.verdicts import ROUND_OFF, TOLERANCE, Verdict
 
 
 class How(Verdict):

@@ -19,8 +19,8 @@ from impactlab.analysis.convergence.richardson import (
     SAFETY_CREDIBLE,
     SAFETY_DOUBTFUL,
 )
-from impactlab.analysis.verdicts import Verdict
 from impactlab.types import Floats
+from impactlab.verdicts import Verdict
 
 FEWEST = 4  # grids that a fit of three coefficients needs
 ORDERS = (0.5, 2.0)

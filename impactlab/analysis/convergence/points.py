@@ -11,8 +11,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from impactlab.analysis.responses import usable
-from impactlab.analysis.verdicts import ROUND_OFF, TOLERANCE, Verdict, verdict_variables
 from impactlab.types import Floats
+from impactlab.verdicts import ROUND_OFF, TOLERANCE, Verdict, verdict_variables
 
 SAFETY = 3.0
 """Uncertainty over difference to the most points, valid where these at least halve the error."""

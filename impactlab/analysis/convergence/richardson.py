@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from impactlab.analysis.verdicts import ROUND_OFF, Verdict
+from impactlab.verdicts import ROUND_OFF, Verdict
 
 FORMAL_ORDER = 2.0  # order in dx of the central differences
 ASYMPTOTIC_BAND = 0.5

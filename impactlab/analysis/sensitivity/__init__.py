@@ -1,8 +1,7 @@
 """Sensitivity indices of the responses of a sample, and verdicts on them.
 
-Each method is a file with its record `METHOD`; `indices` has the registry.
+The estimators are in impactlab.methods, one file per method.
 """
 
-from impactlab.analysis.sensitivity.indices import METHODS as METHODS
 from impactlab.analysis.sensitivity.indices import analysis as analysis
 from impactlab.analysis.sensitivity.indices import applies as applies

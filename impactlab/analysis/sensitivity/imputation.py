@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from impactlab.analysis.responses import Sample, correlations
-from impactlab.analysis.sensitivity.verdict import SensitivityVerdict
 from impactlab.analysis.surrogate.chaos import drawn, fewest_runs
 from impactlab.analysis.surrogate.from_runs import GOOD, Divided
+from impactlab.methods.runs import Sample, correlations
+from impactlab.methods.verdict import SensitivityVerdict
 from impactlab.types import Floats
 
 MOST_IMPUTED = 0.2  # largest share of runs that may be supplied

@@ -11,41 +11,40 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis import regimes
-from impactlab.analysis.responses import Sample, labels, listed, usable
-from impactlab.analysis.sensitivity import delta, fast, morris, pawn, regression, sobol, verdict
+from impactlab.analysis.responses import labels, usable
 from impactlab.analysis.sensitivity.imputation import imputed
-from impactlab.analysis.sensitivity.method import BY_SAMPLES, PAIR, Index, Method
-from impactlab.analysis.sensitivity.verdict import SensitivityVerdict
-from impactlab.analysis.verdicts import flagged
+from impactlab.methods import INDICES, indices_of, sobol, verdict, verdict_name
+from impactlab.methods.record import BY_SAMPLES, PAIR, IndexVariable, Indices
+from impactlab.methods.runs import Sample, listed
+from impactlab.methods.verdict import SensitivityVerdict
 from impactlab.types import Floats
-
-METHODS: Mapping[str, Method] = {
-    module.METHOD.name: module.METHOD for module in (sobol, morris, fast, delta, pawn, regression)
-}
-"""By their names in study files."""
+from impactlab.verdicts import flagged
 
 
 def applies(runs: xr.Dataset) -> bool:
     """Return True for the runs of a method that has indices."""
-    return runs.attrs.get("method") in METHODS
+    return bool(indices_of(runs.attrs))
 
 
 def analysis(runs: xr.Dataset) -> xr.Dataset:
-    """Return sensitivity indices of every response, by the method the sample was drawn for.
+    """Return sensitivity indices of every response, by the methods the sample was drawn for.
 
-    Returns the indices of the method, on (response, *dims), with <name>_interval, the half-width
-    of the interval; sensitivity_verdict, the worst verdict; sensitivity_remarks, all of
-    them; and imputed_share (response).
+    Returns their indices, on (response, *dims), with <name>_interval, the half-width of the
+    interval; sensitivity_verdict, the worst verdict on the indices that the study names first;
+    sensitivity_remarks, all on these; <name of the indices>_verdict, where there are several; and
+    imputed_share (response).
     `parameter` holds the varied parameters, or their groups. Indices are NaN where the verdict
     gives none. Raises ValueError when the runs are not the sample that their attributes describe.
     """
-    sample, method = Sample.of(runs), METHODS[str(runs.attrs["method"])]
-    method.check(sample)
-    answers = [_answer(name, sample, method) for name in listed(runs, "responses")]
+    sample, records = Sample.of(runs), indices_of(runs.attrs)
+    for record in records:
+        record.check(sample)
+    answers = [_answer(name, sample, records) for name in listed(runs, "responses")]
     verdicts, shares, rows = zip(*answers, strict=True)
     indices = {
         name: index
-        for name, index in method.indices.items()
+        for record in records
+        for name, index in record.variables.items()
         if index.dims != PAIR or sample.number("second_order")
     }
     factors, coordinates = list(sample.factors), labels(runs)
@@ -58,47 +57,60 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
         attrs = {"long_name": "base samples used, the first of the sample", "units": "1"}
         coordinates[BY_SAMPLES[0]] = (BY_SAMPLES[0], sobol.base_samples(sample), attrs)
     variables = _variables(rows, indices, sample, coordinates)
-    worst = [max(entry, default=SensitivityVerdict.USABLE) for entry in verdicts]
-    codes = xr.DataArray([int(judgement) for judgement in worst], dims="response")
     supplied = {"long_name": "share of runs whose value a surrogate supplied", "units": "1"}
-    judged = flagged(codes, SensitivityVerdict, "verdict on the sensitivity indices")
+    first = [entry[0] for entry in verdicts]
     variables |= {
-        "sensitivity_verdict": judged,
-        "sensitivity_remarks": verdict.remarks(verdicts),
+        "sensitivity_verdict": _worst(first, "the sensitivity indices"),
+        "sensitivity_remarks": verdict.remarks(first),
         "imputed_share": ("response", list(shares), supplied),
     }
+    for number, record in enumerate(records if len(records) > 1 else ()):
+        judged = _worst([entry[number] for entry in verdicts], f"the indices {record.name}")
+        variables[f"{record.name}_verdict"] = judged
     return xr.Dataset(variables, coordinates)
 
 
+def _worst(verdicts: Sequence[Sequence[SensitivityVerdict]], subject: str) -> xr.DataArray:
+    codes = [int(max(entry, default=SensitivityVerdict.USABLE)) for entry in verdicts]
+    array = xr.DataArray(codes, dims="response")
+    return flagged(array, SensitivityVerdict, f"verdict on {subject}")
+
+
 def _answer(
-    response: str, sample: Sample, method: Method
-) -> tuple[list[SensitivityVerdict], float, dict[str, Floats]]:
-    """Return verdicts, share of runs that a surrogate supplied, and indices of a response."""
+    response: str, sample: Sample, records: Sequence[Indices]
+) -> tuple[list[list[SensitivityVerdict]], float, dict[str, Floats]]:
+    """Return verdicts on each record's indices of a response, share supplied, and the indices."""
     outputs = usable(sample.runs, response).values[0]
     filled = imputed(outputs, sample, response)
     if filled.refusal is not None:
-        return [filled.refusal], 0.0, {}
+        return [[filled.refusal]] * len(records), 0.0, {}
     complete = filled.outputs
-    verdicts = verdict.of_outputs(complete, method.varying(complete, sample), filled.share)
+    varying = [part for record in records for part in record.varying(complete, sample)]
+    verdicts = verdict.of_outputs(complete, varying, filled.share)
     if (
         max(verdicts, default=0) < SensitivityVerdict.CONSTANT
         and regimes.of_sample(sample, outputs).size
     ):
         verdicts.append(SensitivityVerdict.SEVERAL_REGIMES)
     if verdicts and max(verdicts) >= SensitivityVerdict.CONSTANT:
-        return verdicts, 0.0, {}
-    indices = method.estimate(complete, sample, response)
-    for name in indices.keys() & {f"{index}_interval" for index in method.indices}:
-        # Of an index with a unit, such as a mean effect, the largest is the scale; else 1.
-        index = method.indices[name.removesuffix("_interval")]
-        scale = 1.0 if index.units else np.abs(indices[name.removesuffix("_interval")]).max()
-        indices[name] = indices[name] + filled.half_width * scale
-    return verdicts + verdict.of_indices(indices), filled.share, indices
+        return [verdicts] * len(records), 0.0, {}
+    judgements = []
+    indices: dict[str, Floats] = {}
+    for record in records:
+        estimates = record.estimate(complete, sample, response)
+        for name, index in record.variables.items():
+            if (key := f"{name}_interval") in estimates:
+                # Of an index with a unit, such as a mean effect, the largest is the scale; else 1.
+                scale = 1.0 if index.units else np.abs(estimates[name]).max()
+                estimates[key] = estimates[key] + filled.half_width * scale
+        indices |= estimates
+        judgements.append(verdicts + record.judge(estimates))
+    return judgements, filled.share, indices
 
 
 def _variables(
     rows: Sequence[Mapping[str, Floats]],
-    indices: Mapping[str, Index],
+    indices: Mapping[str, IndexVariable],
     sample: Sample,
     coordinates: Mapping[str, Any],
 ) -> dict[str, Any]:
@@ -132,7 +144,7 @@ def sensitivity_variables(analysis: xr.Dataset) -> xr.Dataset:
     names = [
         name
         for name, array in analysis.items()
-        if name in _BESIDE
+        if name in (*_BESIDE, *(f"{record}_verdict" for record in INDICES))
         or _HISTORIES in array.dims
         or (
             {"response"} <= set(array.dims) <= set(_LABELS)
@@ -140,6 +152,10 @@ def sensitivity_variables(analysis: xr.Dataset) -> xr.Dataset:
         )
     ]
     return analysis[names]
+
+
+def _verdict_of(name: str, analysis: xr.Dataset) -> str:
+    return verdict_name(analysis, lambda record: name in record.variables)
 
 
 def table_rows(analysis: xr.Dataset) -> Iterator[dict[str, Any]]:
@@ -151,12 +167,12 @@ def table_rows(analysis: xr.Dataset) -> Iterator[dict[str, Any]]:
     """
     for name, index in sensitivity_variables(analysis).items():
         of_history = _HISTORIES in index.dims
-        if str(name).endswith("_interval") or name in _BESIDE:
+        if str(name).endswith(("_interval", "_verdict")) or name in _BESIDE:
             continue
         if of_history and ("time" in index.dims or "parameter" not in index.dims):
             continue
         margin = analysis.get(f"{name}_interval", xr.full_like(index, np.nan))
-        judged = analysis["history_verdict" if of_history else "sensitivity_verdict"]
+        judged = analysis["history_verdict" if of_history else _verdict_of(str(name), analysis)]
         columns = {
             "value": index,
             "low": index - margin,

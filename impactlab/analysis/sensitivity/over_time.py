@@ -20,22 +20,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity.imputation import MOST_IMPUTED
-from impactlab.analysis.sensitivity.method import half_width, leave_one_out
-from impactlab.analysis.sensitivity.sobol import (
-    FEWEST,
-    JANON,
-    JANSEN,
-    check,
-    ratios,
-    statistics,
-    step,
-)
-from impactlab.analysis.sensitivity.verdict import WIDE, SensitivityVerdict, inconsistent
-from impactlab.analysis.verdicts import ROUND_OFF, Verdict, flagged
+from impactlab.methods.estimators import half_width, leave_one_out
+from impactlab.methods.runs import Sample
+from impactlab.methods.saltelli import ratios, statistics, step
+from impactlab.methods.sobol import FEWEST, JANON, JANSEN, Sobol, check
+from impactlab.methods.verdict import WIDE, SensitivityVerdict, inconsistent
 from impactlab.types import Floats
 from impactlab.variables import attributes, status_bits
+from impactlab.verdicts import ROUND_OFF, Verdict, flagged
 
 SHOWN = ("contact_force", "midspan_deflection")  # the histories that get indices
 ROWS = 512  # base samples that are read together
@@ -67,7 +60,7 @@ class TimeVerdict(Verdict):
 
 def histories(runs: xr.Dataset) -> list[str]:
     """Return the histories of runs that get indices: those stored of a Sobol sample."""
-    of_sample = runs.attrs.get("method") == "sobol"
+    of_sample = runs.attrs.get("method") == Sobol.name()
     return [name for name in SHOWN if of_sample and name in runs and "time" in runs[name].dims]
 
 

@@ -11,18 +11,19 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from impactlab.analysis.regimes import of_sample
-from impactlab.analysis.responses import Sample, correlations, labels, listed, usable
+from impactlab.analysis.responses import labels, usable
 from impactlab.analysis.surrogate.chaos import Chaos, drawn, fewest_runs, fit, indices, influence
 from impactlab.analysis.surrogate.polynomials import Polynomials, orthonormal
 from impactlab.analysis.surrogate.validation import ErrorModel, leverage, predictivity
-from impactlab.analysis.verdicts import ROUND_OFF, Verdict, distinct, flagged
-from impactlab.model.distributions import ARGUMENTS
+from impactlab.methods import SAMPLES
+from impactlab.methods.distributions import DISTRIBUTIONS, distribution_of
+from impactlab.methods.runs import Sample, correlations, listed
+from impactlab.methods.sampling import RandomSample
 from impactlab.types import Floats
+from impactlab.verdicts import ROUND_OFF, Verdict, distinct, flagged
 
 _FOLDS = 5  # parts of a sample; each is predicted by a fit to the others
 _FEWEST_TESTS, _MOST_TESTS = 10, 4000
-_BLOCKS = {"sobol": "base_samples", "morris": "trajectories", "fast": "curves"}
-"""Methods whose runs come in blocks of near-copies, and the attribute with their number."""
 
 
 def applies(runs: xr.Dataset) -> bool:
@@ -30,7 +31,7 @@ def applies(runs: xr.Dataset) -> bool:
     if "run" not in runs.dims or correlations(runs):
         return False
     distributions = (runs[n].attrs if n in runs.coords else {} for n in listed(runs, "varied"))
-    return all(attrs.get("distribution") in ARGUMENTS for attrs in distributions)
+    return all(attrs.get("distribution") in DISTRIBUTIONS for attrs in distributions)
 
 
 @dataclass(frozen=True)
@@ -54,20 +55,20 @@ class Divided:
     def of(cls, runs: xr.Dataset) -> Divided:
         """Divide runs. Raises ValueError where blocks do not fit."""
         sample = Sample.of(runs)
-        method, count = str(runs.attrs.get("method")), runs.sizes["run"]
-        length = 1
-        if method in _BLOCKS:
-            length = count // max(sample.number(_BLOCKS[method]), 1)
+        name, count = str(runs.attrs.get("method")), runs.sizes["run"]
+        method, length = SAMPLES.get(name, RandomSample), 1
+        if method.blocks:
+            length = count // max(sample.number(method.blocks), 1)
         if length < 1 or count % length:
             raise ValueError(
                 f"{sample.study} has {count} runs, not a whole number of blocks of its method "
-                f"{method}: solve it again"
+                f"{name}: solve it again"
             )
         blocks = count // length
         part = np.repeat(sample.rng("surrogate held out").permutation(blocks) % _FOLDS, length)
         tested = part < int(np.clip(np.ceil(_MOST_TESTS * _FOLDS / count), 1, _FOLDS))
         tests = sample.rng("surrogate tests").permutation(np.flatnonzero(tested))[:_MOST_TESTS]
-        near = 2 * sample.number("harmonics") + 1 if method == "fast" else length
+        near = method.near_runs(sample, length)
         return cls(sample, length, near, part, np.sort(tests))
 
     def inputs(self, rows: NDArray[np.int64]) -> Floats:
@@ -82,7 +83,9 @@ class Divided:
     @property
     def polynomials(self) -> tuple[Polynomials, ...]:
         """Polynomials of each parameter."""
-        return tuple(orthonormal(self.sample.runs[n].attrs) for n in self.sample.parameters)
+        return tuple(
+            orthonormal(distribution_of(self.sample.runs[n].attrs)) for n in self.sample.parameters
+        )
 
     def fit(
         self, values: Floats, training: NDArray[np.bool_], seed: int

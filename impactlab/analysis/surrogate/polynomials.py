@@ -10,15 +10,12 @@ Legendre's, for a normal one Hermite's: Xiu and Karniadakis (2002), SIAM J. Sci.
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
 
 import numpy as np
 
-from impactlab.model.distributions import arguments, quadrature
+from impactlab.methods.distributions import Distribution
 from impactlab.types import Floats
 
 HIGHEST_DEGREE = 20
@@ -55,14 +52,10 @@ class Polynomials:
         return polynomials
 
 
-def orthonormal(distribution: Mapping[str, Any]) -> Polynomials:
-    """Return the polynomials of a distribution. Raises ValueError as `arguments`."""
-    return _of(json.dumps(arguments(distribution)))
-
-
 @cache
-def _of(distribution: str) -> Polynomials:
-    logarithmic, nodes, weights = quadrature(json.loads(distribution))
+def orthonormal(distribution: Distribution) -> Polynomials:
+    """Return the polynomials of a distribution."""
+    nodes, weights = distribution.quadrature()
     centre = float(weights @ nodes)
     scale = float(np.sqrt(weights @ (nodes - centre) ** 2))
     z = (nodes - centre) / scale
@@ -73,4 +66,4 @@ def _of(distribution: str) -> Polynomials:
         raised = (z - diagonal[-1]) * present - beside[-1] * below
         beside.append(float(np.sqrt(weights @ raised**2)))
         below, present = present, raised / beside[-1]
-    return Polynomials(logarithmic, centre, scale, tuple(diagonal), tuple(beside))
+    return Polynomials(distribution.is_logarithmic, centre, scale, tuple(diagonal), tuple(beside))

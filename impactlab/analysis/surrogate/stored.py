@@ -13,10 +13,10 @@ from impactlab.analysis.surrogate.chaos import basis
 from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
 from impactlab.analysis.surrogate.polynomials import orthonormal
 from impactlab.analysis.surrogate.validation import half_width
-from impactlab.analysis.verdicts import names
 from impactlab.files import read_netcdf
-from impactlab.model.distributions import arguments, cumulative, quantile
+from impactlab.methods.distributions import distribution_of
 from impactlab.types import Floats
+from impactlab.verdicts import names
 
 IMPRECISE = 0.1
 """Error, relative to a prediction, from which on that prediction is imprecise."""
@@ -46,7 +46,9 @@ class Surrogate:
         self.dataset = dataset
         self.parameters: tuple[str, ...] = tuple(map(str, dataset["parameter"].values))
         self.responses: tuple[str, ...] = tuple(map(str, dataset["response"].values))
-        self._distributions = [json.loads(text) for text in dataset["distribution"].values]
+        self._distributions = [
+            distribution_of(json.loads(text)) for text in dataset["distribution"].values
+        ]
         self._polynomials = [orthonormal(distribution) for distribution in self._distributions]
         self._study = repr(dataset.attrs.get("study", "?"))
         self._takes = f"the surrogate takes {', '.join(self.parameters)}"
@@ -163,7 +165,7 @@ class Surrogate:
 
     def _inputs(self, unit: Floats) -> Floats:
         pairs = zip(self._distributions, unit.T, strict=True)
-        return np.column_stack([quantile(distribution, column) for distribution, column in pairs])
+        return np.column_stack([distribution.quantile(column) for distribution, column in pairs])
 
     def _evaluated(self, inputs: Floats) -> tuple[Floats, Floats, Floats]:
         """Return responses, leverages and errors at points in SI units, each (responses, points).
@@ -194,8 +196,7 @@ class Surrogate:
         dict
             Name and arguments of the distribution, in SI units.
         """
-        distribution: dict[str, Any] = self._distributions[self.parameters.index(parameter)]
-        return distribution
+        return self._distributions[self.parameters.index(parameter)].arguments()
 
     def probability(self, parameter: str, value: float) -> float:
         """Return the probability of smaller values.
@@ -218,7 +219,7 @@ class Surrogate:
             If the value lies outside the sampled range.
         """
         self._checked(parameter, value)
-        return float(cumulative(self.distribution(parameter), value))
+        return float(self._distributions[self.parameters.index(parameter)].cumulative(value))
 
     def _check_known(self, name: str) -> None:
         if name not in self.parameters:
@@ -273,7 +274,7 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
     dataset = analysis[list(renamed)].drop_vars("parameter", errors="ignore")
     dataset = dataset.rename(renamed | {"surrogate_term": "term", "surrogate_input": "parameter"})
     columns = [runs[str(name)] for name in dataset["parameter"].values]
-    distributions = [arguments(column.attrs) for column in columns]
+    distributions = [distribution_of(column.attrs).arguments() for column in columns]
     pairs = list(zip(distributions, columns, strict=True))
     lowest = [
         distribution["low"] if "low" in distribution else float(column.min())

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from impactlab.analysis.convergence.judgement import judge as judge_convergence
-from impactlab.analysis.verdicts import TOLERANCE
 from impactlab.paper.statements.statement import (
     PRINTED_DIFFERENCE,
     VELOCITY,
@@ -25,6 +24,7 @@ from impactlab.paper.statements.statement import (
     select_response,
     statement,
 )
+from impactlab.verdicts import TOLERANCE
 
 NODES_STUDY, POINTS_STUDY = "fig06_nodes", "fig06_points"
 VELOCITIES = (VELOCITY, 15.0)  # without and with yielding fibres, m/s

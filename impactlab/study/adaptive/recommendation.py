@@ -30,18 +30,18 @@ from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.axes import NODES, without_limit
 from impactlab.analysis.convergence.judgement import numerical_uncertainty
 from impactlab.analysis.responses import usable
+from impactlab.methods.distributions import Choice, Distribution
 from impactlab.model.cost import node_steps
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import Value, flatten, with_values
 from impactlab.simulate import case_table
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.engine import Engine
-from impactlab.study.errors import Problem, StudyError
 from impactlab.study.execute import execute
-from impactlab.study.schema.parameters import Choice, Distribution
 from impactlab.study.schema.study import Auto, Study
 from impactlab.study.store import locked
 from impactlab.types import Floats
+from impactlab.validation.errors import Problem, StudyError
 from impactlab.variables import described, provenance
 
 AXES = ("nodes", "points", "courant")

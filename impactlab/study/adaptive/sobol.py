@@ -13,8 +13,8 @@ import numpy as np
 import xarray as xr
 
 from impactlab import wings
-from impactlab.analysis.responses import in_order, listed
-from impactlab.study.sampling.design import doubled
+from impactlab.methods.runs import in_order, listed
+from impactlab.study.design import doubled
 
 log = logging.getLogger(__name__)
 MOST, FEWEST, SHARE = 64, 16, 8

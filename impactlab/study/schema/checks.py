@@ -8,18 +8,19 @@ from typing import Any
 import numpy as np
 
 from impactlab import wings
+from impactlab.analysis.catalogue import ANALYSES
+from impactlab.methods import NO_DISTRIBUTION
+from impactlab.methods.distributions import Choice, Distribution
+from impactlab.methods.grid import Grid
+from impactlab.methods.sampling import RandomSample, Sampling
+from impactlab.methods.sobol import Sobol
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
 from impactlab.model.parameters import PARAMETERS, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS
-from impactlab.study.errors import unknown
-from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.samples import Sobol
-from impactlab.study.sampling.sections import Sample, Sampling
-from impactlab.study.schema.parameters import Choice, Distribution
 from impactlab.study.schema.study import FunctionStudy, Study, StudyFile
-from impactlab.study.validity import Base, refused_corner
-from impactlab.variables import ANALYSES, NO_DISTRIBUTION
+from impactlab.validation.errors import unknown
+from impactlab.validation.refusals import Base, refused_corner
 
 Reasons = Iterator[tuple[str, str]]
 """Dotted keys, and the reason why each is wrong."""
@@ -34,14 +35,15 @@ def further_models(study: Study | StudyFile) -> list[wings.Model]:
     return wings.among(values_of(study.sampling, "beam_model", study.impact.beam_model))
 
 
-def values_of(sampling: Grid | Sample, name: str, base: Value) -> tuple[Value, ...]:
+def values_of(sampling: Grid | RandomSample, name: str, base: Value) -> tuple[Value, ...]:
     """Return all values of a parameter that a sample draws no numbers for."""
-    if isinstance(sampling, Grid):
-        return sampling.parameters.get(name, (base,))
-    if isinstance(entry := sampling.parameters.get(name), Choice):
-        choices: tuple[Value, ...] = entry.values
-        return choices
-    return (sampling.fixed.get(name, base),)
+    entry = sampling.parameters.get(name)
+    values: tuple[Value, ...] = (sampling.fixed.get(name, base),)
+    if isinstance(sampling, Grid) and entry is not None:
+        values = entry
+    elif isinstance(entry, Choice):
+        values = tuple(entry.values)
+    return values
 
 
 def extremes(base: Base, sampling: Sampling) -> Extremes:
@@ -117,7 +119,7 @@ def limit_reasons(file: StudyFile | FunctionStudy) -> Reasons:
             yield f"limits.{name}", unknown("response", name, file.responses)
     method = file.sampling.method
     if file.limits and (reason := NO_DISTRIBUTION.get(method)):
-        methods = "sobol, delta, pawn or regression"
+        methods = "sobol, latin, delta, pawn, rbd_fast or regression"
         yield "limits", f"give no probabilities with method {method}: {reason} (use {methods})"
     elif file.limits and "distribution" not in file.analyses:
         yield "limits", "need the analysis distribution: list it in analyses"

@@ -9,15 +9,14 @@ from typing import Annotated, Any
 
 from pydantic import Field, PlainValidator, create_model
 
+from impactlab.analysis.catalogue import ANALYSES
+from impactlab.methods import read_sampling
+from impactlab.methods.grid import Grid
+from impactlab.methods.sampling import RandomSample
+from impactlab.methods.sobol import Sobol
 from impactlab.model.parameters import PARAMETERS, Parameter
 from impactlab.model.quantities import si_units
-from impactlab.study.errors import Problem, StudyError, unknown
-from impactlab.study.sampling import read_sampling
-from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.samples import Sobol
-from impactlab.study.sampling.sections import Sample
 from impactlab.study.schema.checks import CHECKS, further_models, limit_reasons, values_of
-from impactlab.study.schema.section import Heading, Names, names, validated
 from impactlab.study.schema.study import (
     Analysis,
     FunctionStudy,
@@ -26,8 +25,11 @@ from impactlab.study.schema.study import (
     StudyFile,
     Verification,
 )
+from impactlab.study.schema.written import text_of
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source
-from impactlab.variables import ANALYSES, COORDINATES, FLAGS, RESPONSES, VARIABLES, attributes
+from impactlab.validation.errors import Problem, StudyError, unknown
+from impactlab.validation.section import Heading, Names, names, validated
+from impactlab.variables import COORDINATES, FLAGS, RESPONSES, VARIABLES, attributes
 from impactlab.verification.functions import FUNCTIONS
 
 
@@ -67,9 +69,18 @@ def study_of_text(name: str, text: str, path: Path | None = None) -> Study | Fun
     """Read a study of runs from the text of NAME.yaml; see `read_any`. path: that errors name."""
     path = path or Path(f"{name}.yaml")
     source = Source(name, path, text, read_mapping(text, str(path)))
+    return _of_runs(source)
+
+
+def study_of_content(name: str, content: dict[str, Any], path: Path) -> Study | FunctionStudy:
+    """Read a study of runs from the content of NAME.yaml; see `read_any`. path: errors name it."""
+    return _of_runs(Source(name, path, text_of(content), content))
+
+
+def _of_runs(source: Source) -> Study | FunctionStudy:
     declared = _READERS[_kind(source)](source)
     if isinstance(declared, Verification):
-        raise _wrong_kind(path, "lists checks and has no runs", "verify")
+        raise _wrong_kind(source.path, "lists checks and has no runs", "verify")
     return declared
 
 
@@ -98,7 +109,7 @@ def describe(path: Path) -> dict[str, Any]:
         "checks": isinstance(study, Verification),
         "growing": isinstance(sampling, Sobol) and bool(sampling.until),
         "auto": isinstance(study, Study) and study.auto is not None,
-        "sample": impacts and isinstance(sampling, Sample),
+        "sample": impacts and isinstance(sampling, RandomSample),
         "sobol": impacts and isinstance(sampling, Sobol),
     }
     listed = [name for name, has in traits.items() if has]
@@ -262,7 +273,7 @@ def _units(entry: Any) -> str:
 
 class _FunctionFile(Heading):
     function: str
-    sampling: Annotated[Grid | Sample, PlainValidator(read_sampling)]
+    sampling: Annotated[Grid | RandomSample, PlainValidator(read_sampling)]
     limits: Limits = Field(default_factory=dict)
     analysis: Analysis = Field(default_factory=Analysis)
 

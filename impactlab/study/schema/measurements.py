@@ -18,12 +18,12 @@ from pydantic import (
 )
 
 from impactlab.analysis.measurements import Measurement
-from impactlab.analysis.responses import listed
+from impactlab.methods.runs import listed
 from impactlab.model.parameters import PARAMETERS, Parameter
 from impactlab.model.quantities import si
-from impactlab.study.errors import unknown
-from impactlab.study.schema.parameters import value_type
-from impactlab.study.schema.section import (
+from impactlab.study.schema.yaml_file import read_mapping, read_text
+from impactlab.validation.errors import unknown
+from impactlab.validation.section import (
     Heading,
     Number,
     Section,
@@ -33,8 +33,8 @@ from impactlab.study.schema.section import (
     requires,
     validated,
 )
-from impactlab.study.schema.written import plain
-from impactlab.study.schema.yaml_file import read_mapping, read_text
+from impactlab.validation.stated import plain
+from impactlab.validation.values import value_type
 from impactlab.variables import RESPONSES
 
 Conditions = Mapping[str, Any]

@@ -19,17 +19,18 @@ from pydantic import (
     create_model,
 )
 
+from impactlab.analysis.catalogue import ANALYSES
+from impactlab.methods import read_sampling
+from impactlab.methods.grid import Grid
+from impactlab.methods.sampling import RandomSample
+from impactlab.methods.sobol import Sobol
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import BASES, Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.model.quantities import duration
 from impactlab.solver import SCHEMES
-from impactlab.study.sampling import read_sampling
-from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.samples import Sobol
-from impactlab.study.sampling.sections import Sample
-from impactlab.study.schema.parameters import value_type
-from impactlab.study.schema.section import (
+from impactlab.validation.refusals import Base, refusal
+from impactlab.validation.section import (
     Heading,
     Names,
     Number,
@@ -41,8 +42,8 @@ from impactlab.study.schema.section import (
     one_of,
     quantity,
 )
-from impactlab.study.validity import Base, refusal
-from impactlab.variables import ANALYSES, RESPONSES
+from impactlab.validation.values import value_type
+from impactlab.variables import RESPONSES
 
 
 class Auto(Section):
@@ -170,7 +171,7 @@ class StudyFile(Heading):
         tuple[Discretisation, Auto | None], PlainValidator(read_discretisation)
     ] = Discretisation(), None
     duration: Annotated[float, BeforeValidator(duration), Field(gt=0)]
-    sampling: Annotated[Grid | Sample, PlainValidator(read_sampling)]
+    sampling: Annotated[Grid | RandomSample, PlainValidator(read_sampling)]
     responses: Annotated[tuple[str, ...], names("response", RESPONSES)] = tuple(RESPONSES)
     analyses: Annotated[tuple[str, ...], names("analysis", ANALYSES)] = tuple(ANALYSES)
     limits: Limits = Field(default_factory=dict)
@@ -211,7 +212,7 @@ class StudyBase(Declared):
     response, in SI units. analysis: settings of sensitivity indices and intervals.
     """
 
-    sampling: Grid | Sample
+    sampling: Grid | RandomSample
     responses: tuple[str, ...]
     analyses: tuple[str, ...]
     limits: Mapping[str, float]

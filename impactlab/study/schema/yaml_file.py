@@ -19,7 +19,7 @@ from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.events import CollectionEndEvent, CollectionStartEvent, NodeEvent
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
-from impactlab.study.errors import Problem, StudyError, dotted
+from impactlab.validation.errors import Problem, StudyError, dotted
 
 LARGEST = 256 * 1024
 """Largest size of a study file in bytes."""

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab import wings
-from impactlab.analysis.responses import listed
+from impactlab.methods.runs import listed
 from impactlab.study.netcdf import Array, Columns
 from impactlab.study.store import OutputSpec
 from impactlab.variables import attributes, provenance

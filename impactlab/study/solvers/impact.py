@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.responses import listed
+from impactlab.methods.runs import listed
 from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact

@@ -15,11 +15,12 @@ import xarray as xr
 
 import impactlab as il
 from impactlab.analysis.analyse import analyse
-from impactlab.analysis.sensitivity import method, sobol
+from impactlab.analysis.catalogue import ANALYSES, AnalysisEntry
 from impactlab.analysis.surrogate import chaos
 from impactlab.files import write_netcdf
+from impactlab.methods import estimators as method
+from impactlab.methods import saltelli
 from impactlab.study.steps import analyse_runs
-from impactlab.variables import ANALYSES, AnalysisEntry
 
 Build = Callable[..., xr.Dataset]
 IN_UNITS_OF_RESPONSES = (
@@ -169,7 +170,7 @@ def test_a_sample_is_analysed_one_response_at_a_time(
     sample_runs: Build, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Memory holds fewer than 6 columns; the responses and parameters of the runs are 12."""
-    monkeypatch.setattr(sobol, "_ROWS", 1024)
+    monkeypatch.setattr(saltelli, "_ROWS", 1024)
     monkeypatch.setattr(method, "_CELLS", 10_000)
     monkeypatch.setattr(chaos, "MOST_RUNS", 100)
     names, parameters = [f"y{at}" for at in range(6)], ["x0", "x1", "x2", "x3", "x4", "x5"]

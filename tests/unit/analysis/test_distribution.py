@@ -20,9 +20,9 @@ from impactlab.analysis.distribution import (
     drawn_outputs,
     write_csv,
 )
-from impactlab.analysis.responses import Sample
-from impactlab.study.sampling.samples import saltelli
-from impactlab.variables import NO_DISTRIBUTION
+from impactlab.methods import NO_DISTRIBUTION, independent_runs
+from impactlab.methods.runs import Sample
+from impactlab.methods.saltelli import saltelli
 
 
 def runs_of(
@@ -81,7 +81,7 @@ def test_of_a_saltelli_sample_only_a_and_b_are_draws() -> None:
     inputs = dict(zip("abc", drawn.T, strict=True))
     attrs = {"method": "sobol", "base_samples": 64, "second_order": 1, "replicates": 8}
     runs = runs_of(inputs, {"y": drawn.sum(axis=1)}, {"y": 2.0}, **attrs)
-    rows = Sample.of(runs).draws
+    rows = independent_runs(Sample.of(runs))
     assert rows.size == 2 * 64
     for column in inputs.values():  # every other run has a value in common with one of these
         assert np.unique(column[rows]).size == rows.size == np.unique(column).size

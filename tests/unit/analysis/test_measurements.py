@@ -17,8 +17,8 @@ from impactlab.figures.catalogue import applicable
 from impactlab.figures.data import drawn
 from impactlab.report.answer import LINES, answers
 from impactlab.report.measured import entries, sections
-from impactlab.study.errors import StudyError
 from impactlab.study.schema.measurements import read_measurements
+from impactlab.validation.errors import StudyError
 
 ROOT = Path(__file__).parents[3]
 FORCE = {"quantity": "peak_force", "value": "12 kN", "standard_uncertainty": 100}

@@ -6,7 +6,7 @@ import xarray as xr
 
 from impactlab.analysis.numerical import measured, numerical
 from impactlab.study.adaptive.sobol import refine_cases
-from impactlab.study.sampling.design import design
+from impactlab.study.design import design
 from impactlab.study.schema.files import study_of_text
 
 RUNS = 4096

@@ -14,11 +14,11 @@ from impactlab.fem3d import study as witness
 from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.fem3d.wing import VARIABLES
 from impactlab.model.cost import A_SECOND
+from impactlab.study.design import design
 from impactlab.study.engine import Engine
 from impactlab.study.estimate import estimate
 from impactlab.study.execute import execute
 from impactlab.study.runs import Work
-from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import study_of_text
 from impactlab.study.store import OutputSpec
 from impactlab.variables import STATUS_FLAGS

@@ -14,7 +14,7 @@ import xarray as xr
 
 from impactlab.analysis.surrogate import analysis, packed
 from impactlab.files import write_netcdf
-from impactlab.model.distributions import quantile
+from impactlab.methods.distributions import distribution_of
 from impactlab.report.study import write_report
 from impactlab.variables import described
 
@@ -44,7 +44,10 @@ def sample() -> tuple[xr.Dataset, xr.Dataset]:
     """Runs of every distribution: smooth answers, one across zero, one constant."""
     unit = np.random.default_rng(4).uniform(size=(600, len(DISTRIBUTIONS)))
     pairs = enumerate(DISTRIBUTIONS.items())
-    varied = {name: ("run", quantile(given, unit[:, at]), given) for at, (name, given) in pairs}
+    varied = {
+        name: ("run", distribution_of(given).quantile(unit[:, at]), given)
+        for at, (name, given) in pairs
+    }
     runs = xr.Dataset(coords=varied | {"run": np.arange(len(unit))})
     depth, stress = runs["beam_depth"] / 0.0278, runs["beam_yield_stress"] / 345e6
     smooth = runs["velocity"] ** 0.3 * depth**1.5 + (runs["sphere_radius"] / 0.035) ** 2

@@ -12,12 +12,12 @@ from drawings import panel, words
 from made_runs import design_of
 
 from impactlab.analysis.analyse import analyse
-from impactlab.analysis.verdicts import TOLERANCE
 from impactlab.figures import labels
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.report.answer import entries
 from impactlab.report.convergence import convergence
 from impactlab.variables import described
+from impactlab.verdicts import TOLERANCE
 
 NONE = "on no grid of this study"
 AXES = ("nodes", "points")

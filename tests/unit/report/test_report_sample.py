@@ -14,13 +14,13 @@ from scipy.stats import spearmanr
 
 from impactlab.analysis import distribution
 from impactlab.analysis.numerical import NumericalFrom
-from impactlab.analysis.verdicts import flagged
 from impactlab.figures.catalogue import applicable
 from impactlab.figures.draw import draw_all
 from impactlab.report import sensitivity
 from impactlab.report.answer import answers
 from impactlab.report.sensitivity import with_margin
 from impactlab.report.study import write_report
+from impactlab.verdicts import flagged
 
 Study = tuple[xr.Dataset, xr.Dataset]
 PEAK = {"response": "peak_force"}

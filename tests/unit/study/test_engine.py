@@ -14,7 +14,7 @@ from tornado.util import TimeoutError as TornadoTimeoutError
 
 from impactlab.study import engine
 from impactlab.study.engine import Engine, Profile, read_profile, slurm_cluster
-from impactlab.study.errors import StudyError
+from impactlab.validation.errors import StudyError
 
 
 def listening():

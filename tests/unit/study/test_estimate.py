@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from impactlab.model.cost import memory, work
+from impactlab.study.design import design
 from impactlab.study.estimate import (
     _PROGRAM,
     A_SECOND,
@@ -17,7 +18,6 @@ from impactlab.study.estimate import (
     Estimate,
     estimate,
 )
-from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import study_of_text
 from impactlab.study.solvers import solver_named
 
@@ -78,7 +78,7 @@ def test_a_growing_sample_costs_its_largest_size():
     study = study_of_text("some", SAMPLE)
     found = estimate(study, NOWHERE, 1)
     assert found.runs == 20_000
-    fewer = replace(study, sampling=study.sampling.model_copy(update={"until": None}))
+    fewer = replace(study, sampling=replace(study.sampling, until=None))
     less = estimate(fewer, NOWHERE, 1)
     assert less.runs == 1024 * 6
     assert found.seconds == pytest.approx(less.seconds * 20_000 / 6144, rel=0.1)

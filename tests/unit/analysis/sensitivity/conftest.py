@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.study.sampling.samples import REPLICATES
+from impactlab.methods.saltelli import REPLICATES
 from impactlab.variables import described
 
 A = np.array([0.0, 0.5, 3.0, 9.0, 99.0])

@@ -14,8 +14,8 @@ from scipy.integrate import quad
 from scipy.stats import ks_2samp, norm, qmc, spearmanr
 
 from impactlab.analysis import sensitivity
-from impactlab.analysis.sensitivity.delta import deltas, first_orders
-from impactlab.analysis.sensitivity.pawn import distances, slides
+from impactlab.methods.delta import deltas, first_orders
+from impactlab.methods.pawn import distances, slides
 
 Build = Callable[..., xr.Dataset]
 WEIGHTS = np.array([2.0, -1.0, 0.0])

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.analysis.responses import Sample
-from impactlab.analysis.sensitivity import method
+from impactlab.methods import estimators as method
+from impactlab.methods.runs import Sample
 
 
 def _sample(resamples: int, confidence: float = 0.95) -> Sample:

@@ -13,8 +13,8 @@ from SALib.sample import morris as sampler
 from scipy.stats import norm
 
 from impactlab.analysis import sensitivity
-from impactlab.analysis.responses import Sample
-from impactlab.analysis.sensitivity.morris import levels
+from impactlab.methods.morris import levels
+from impactlab.methods.runs import Sample
 
 Build = Callable[..., xr.Dataset]
 

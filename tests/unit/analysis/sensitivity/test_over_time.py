@@ -15,15 +15,15 @@ import xarray as xr
 from impactlab import files
 from impactlab.analysis import sensitivity
 from impactlab.analysis.analyse import analyse
-from impactlab.analysis.responses import Sample
 from impactlab.analysis.sensitivity import over_time
 from impactlab.analysis.sensitivity.indices import sensitivity_variables, table_rows
 from impactlab.analysis.sensitivity.over_time import HistoryVerdict, TimeVerdict
 from impactlab.figures import single_runs
 from impactlab.figures.labels import display
 from impactlab.files import checked, opened, write_netcdf
+from impactlab.methods.runs import Sample
+from impactlab.methods.saltelli import saltelli
 from impactlab.study.runs import open_answers
-from impactlab.study.sampling.samples import saltelli
 from impactlab.study.store import OutputSpec, RunIndex, Shards
 from impactlab.variables import STATUS_FLAGS
 

@@ -11,11 +11,12 @@ import xarray as xr
 from SALib.analyze import sobol as salib
 
 from impactlab.analysis import sensitivity
-from impactlab.analysis.responses import Sample
-from impactlab.analysis.sensitivity import sobol as module
-from impactlab.analysis.sensitivity import verdict
 from impactlab.figures import measures
-from impactlab.study.sampling.samples import saltelli
+from impactlab.methods import saltelli as numerics
+from impactlab.methods import sobol as module
+from impactlab.methods import verdict
+from impactlab.methods.runs import Sample
+from impactlab.methods.saltelli import saltelli
 
 Build = Callable[..., xr.Dataset]
 Z95 = 1.959964
@@ -102,7 +103,7 @@ def test_errors_are_smaller_than_those_of_salib(sample_runs: Build, ishigami: An
     for seed in range(40):
         outputs = ishigami.of_unit(saltelli(names, 256, True, seed))
         runs = sample_runs(names, 256, peak_force=outputs)
-        found = module.METHOD.estimate(outputs, Sample.of(runs), "y")
+        found = module.INDICES.estimate(outputs, Sample.of(runs), "y")
         theirs = salib.analyze(problem, outputs, num_resamples=2, seed=1)
         orders = ("first_order", "total_order", "second_order")
         for key, order in zip(exact, orders, strict=True):
@@ -123,7 +124,7 @@ def test_blocks_change_nothing(
     outputs, names = ishigami.of_unit(_sample(3, 64)), ["x0", "x1", "x2"]
     runs = sample_runs(names, 64, peak_force=outputs)
     whole = sensitivity.analysis(runs)
-    monkeypatch.setattr(module, "_ROWS", 24)
+    monkeypatch.setattr(numerics, "_ROWS", 24)
     xr.testing.assert_allclose(sensitivity.analysis(runs), whole, rtol=1e-12)
 
 
@@ -147,9 +148,9 @@ def test_intervals_cover_where_dimensions_of_a_and_b_depend_on_each_other(
         outputs = function(saltelli(names, base, False, seed))
         attrs = {"varied": names, "base_samples": base, "second_order": 0, "replicates": 8}
         runs = xr.Dataset(coords={"run": np.arange(len(outputs))}, attrs=attrs)
-        found = module.METHOD.estimate(outputs, Sample.of(runs), "y")
+        found = module.INDICES.estimate(outputs, Sample.of(runs), "y")
         covered.append(abs(found["first_order"] - exact) <= found["first_order_interval"])
-        alarms += verdict.SensitivityVerdict.DEPENDENT_BASES in verdict.of_indices(found)
+        alarms += verdict.SensitivityVerdict.DEPENDENT_BASES in module.INDICES.judge(found)
     assert np.mean(covered, axis=0).min() >= 0.85  # 0.95 but for 3 standard deviations
     assert alarms <= 1
 

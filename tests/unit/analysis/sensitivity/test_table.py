@@ -14,7 +14,7 @@ from SALib.sample import morris as morris_sampler
 
 from impactlab.analysis.analyse import analyse
 from impactlab.analysis.sensitivity.indices import sensitivity_variables, table_rows, write_csv
-from impactlab.study.sampling.samples import saltelli
+from impactlab.methods.saltelli import saltelli
 
 Build = Callable[..., xr.Dataset]
 PROBLEM = {"num_vars": 3, "names": list("abc"), "bounds": [[0, 1]] * 3}

@@ -12,8 +12,8 @@ from scipy.stats import norm
 
 from impactlab.analysis import sensitivity
 from impactlab.analysis.analyse import analyse
-from impactlab.analysis.sensitivity import verdict
-from impactlab.study.sampling.samples import saltelli
+from impactlab.methods import verdict
+from impactlab.methods.saltelli import saltelli
 
 Build = Callable[..., xr.Dataset]
 Read = Callable[..., Any]
@@ -91,7 +91,7 @@ def _found(first: Any, total: Any, margin: float) -> dict[str, Any]:
     ],
 )
 def test_shares_that_contradict_themselves(first: Any, total: Any, margin: Any, name: str) -> None:
-    said = verdict.of_indices(_found(first, total, margin))
+    said = verdict.of_orders(_found(first, total, margin))
     assert [entry.name for entry in said] == [name] * (name != "USABLE")
 
 

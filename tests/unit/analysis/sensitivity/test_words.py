@@ -16,7 +16,7 @@ import xarray as xr
 
 import impactlab as il
 from impactlab.analysis import sensitivity
-from impactlab.analysis.sensitivity.delta import deltas, first_orders
+from impactlab.methods.delta import deltas, first_orders
 
 OFFSET = {"low": 0.0, "middle": 1.0, "high": 3.0}
 WEIGHTS = np.array([0.6, 0.3, 0.1])

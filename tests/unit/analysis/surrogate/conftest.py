@@ -10,8 +10,9 @@ import pytest
 import xarray as xr
 from SALib.sample import sobol as sampler
 
+import impactlab as il
 from impactlab.analysis.surrogate.polynomials import orthonormal
-from impactlab.model.distributions import quantile
+from impactlab.methods.distributions import distribution_of
 from impactlab.variables import described
 
 RANGES: dict[str, dict[str, Any]] = {
@@ -20,7 +21,7 @@ RANGES: dict[str, dict[str, Any]] = {
     "beam_yield_stress": {"distribution": "log_uniform", "low": 250e6, "high": 450e6},
 }
 Answer = Callable[[Any], Any]
-UNIT = orthonormal({"distribution": "uniform", "low": 0.0, "high": 1.0})
+UNIT = orthonormal(il.Uniform(0.0, 1.0))
 
 
 def ishigami(unit: Any) -> Any:
@@ -50,7 +51,7 @@ def drawn_runs() -> Callable[..., xr.Dataset]:
         variables: dict[str, Any] = {name: ("run", f(unit)) for name, f in answers.items()}
         variables["status"] = ("run", np.zeros(len(unit), np.int32))
         coords = {
-            name: ("run", quantile(given, unit[:, at]), given)
+            name: ("run", distribution_of(given).quantile(unit[:, at]), given)
             for at, (name, given) in enumerate(ranges.items())
         }
         own = {

@@ -10,8 +10,8 @@ import pytest
 import xarray as xr
 
 from impactlab.analysis.analyse import analyse
+from impactlab.analysis.catalogue import ANALYSES
 from impactlab.analysis.surrogate import analysis, applies
-from impactlab.variables import ANALYSES
 
 from .conftest import ishigami
 

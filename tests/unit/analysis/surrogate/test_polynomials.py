@@ -13,7 +13,7 @@ from scipy.special import factorial
 
 from impactlab.analysis.surrogate.chaos import fit, indices, influence
 from impactlab.analysis.surrogate.polynomials import orthonormal
-from impactlab.model.distributions import cumulative, quantile
+from impactlab.methods.distributions import distribution_of
 
 YIELD = {
     "distribution": "truncated_normal",
@@ -40,11 +40,13 @@ def test_polynomials_are_orthonormal_under_their_distribution(kind: dict[str, An
     """Integrated over probabilities, which the recurrence never sees."""
     nodes, weights = np.polynomial.legendre.leggauss(60)
     edges = np.array([*10.0 ** np.arange(-15, 0), *np.linspace(0.15, 0.85, 21)])
-    edges = np.unique([0.0, *edges, *(1 - edges), cumulative(kind, kind.get("mode", -np.inf))])
+    edges = np.unique(
+        [0.0, *edges, *(1 - edges), distribution_of(kind).cumulative(kind.get("mode", -np.inf))]
+    )
     half = np.diff(edges)[:, np.newaxis] / 2
     probabilities = (edges[:-1, np.newaxis] + half * (1 + nodes)).ravel()
-    polynomials = orthonormal(kind)
-    values = polynomials(polynomials.standardised(quantile(kind, probabilities)), 4)
+    polynomials = orthonormal(distribution_of(kind))
+    values = polynomials(polynomials.standardised(distribution_of(kind).quantile(probabilities)), 4)
     products = values * (half * weights).ravel() @ values.T
     np.testing.assert_allclose(products, np.eye(5), atol=2e-5)
 
@@ -56,17 +58,21 @@ def test_uniform_is_legendre_and_normal_is_hermite(kind: dict[str, Any]) -> None
         expected = np.sqrt(2 * degrees + 1) * legvander(z / np.sqrt(3), 20)
     else:
         expected = hermevander(z, 20) / np.sqrt(factorial(degrees))
-    np.testing.assert_allclose(orthonormal(kind)(z, 20), expected.T, rtol=1e-9, atol=1e-11)
+    np.testing.assert_allclose(
+        orthonormal(distribution_of(kind))(z, 20), expected.T, rtol=1e-9, atol=1e-11
+    )
 
 
 def _stress(kind: Any, seed: int, runs: int = 300) -> tuple[Any, Any, Any, Any]:
     kinds = [kind, {"distribution": "uniform", "low": 0.0, "high": 1.0}]
     unit = scipy.stats.qmc.LatinHypercube(2, rng=np.random.default_rng(seed)).random(runs)
-    inputs = np.column_stack([quantile(k, u) for k, u in zip(kinds, unit.T, strict=True)])
+    inputs = np.column_stack(
+        [distribution_of(k).quantile(u) for k, u in zip(kinds, unit.T, strict=True)]
+    )
     return (
         kinds,
         inputs,
-        tuple(map(orthonormal, kinds)),
+        tuple(orthonormal(distribution_of(kind)) for kind in kinds),
         lambda x: (x[:, 0] / 345e6) ** 1.5 + x[:, 1],
     )
 

@@ -16,6 +16,7 @@ from impactlab.analysis.surrogate.chaos import Chaos
 from impactlab.analysis.surrogate.polynomials import orthonormal
 from impactlab.analysis.surrogate.stored import Surrogate
 from impactlab.files import write_netcdf
+from impactlab.methods.distributions import distribution_of
 from impactlab.report.console import print_predictions
 
 from .conftest import RANGES, ishigami
@@ -58,7 +59,7 @@ def test_predictions_of_the_file_are_those_of_the_fit(
     rows = slice(0, 50)
     predicted = loaded.predict(**{name: runs[name].values[rows] for name in POINT})
     inputs = np.column_stack([runs[name].values[rows] for name in POINT])
-    kinds = tuple(orthonormal(runs[name].attrs) for name in POINT)
+    kinds = tuple(orthonormal(distribution_of(runs[name].attrs)) for name in POINT)
     for name in ("peak_force", "impulse"):
         coefficients = found["surrogate_coefficient"].sel(response=name).values
         chaos = Chaos(found["surrogate_degree"].values, coefficients, kinds)

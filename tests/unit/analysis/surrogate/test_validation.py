@@ -11,7 +11,7 @@ import scipy.stats
 from impactlab.analysis.surrogate.chaos import fit
 from impactlab.analysis.surrogate.polynomials import orthonormal
 from impactlab.analysis.surrogate.validation import ErrorModel, half_width, leverage, predictivity
-from impactlab.model.distributions import quantile
+from impactlab.methods.distributions import distribution_of
 
 NORMAL = {
     "distribution": "truncated_normal",
@@ -29,10 +29,12 @@ def response(x: Any) -> Any:
 
 def test_stated_errors_hold_at_one_bound_and_in_corners() -> None:
     rng, inside = np.random.default_rng(0), {"bound": [], "corner": []}  # type: ignore[var-annotated]
-    polynomials = tuple(map(orthonormal, KINDS))
+    polynomials = tuple(orthonormal(distribution_of(kind)) for kind in KINDS)
     for _ in range(6):
         unit = scipy.stats.qmc.LatinHypercube(3, rng=rng).random(80)
-        inputs = np.column_stack([quantile(k, u) for k, u in zip(KINDS, unit.T, strict=True)])
+        inputs = np.column_stack(
+            [distribution_of(k).quantile(u) for k, u in zip(KINDS, unit.T, strict=True)]
+        )
         values, part, errors = response(inputs), rng.permutation(80) % 5, np.empty(80)
         for k in range(5):
             left = part == k

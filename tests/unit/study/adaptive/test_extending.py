@@ -9,7 +9,7 @@ import xarray as xr
 
 from impactlab.analysis.analyse import analyse
 from impactlab.study.adaptive.sobol import extend_sample, largest_interval
-from impactlab.study.sampling.design import design
+from impactlab.study.design import design
 from impactlab.study.schema.files import study_of_text
 
 RESPONSES = ["peak_force", "contact_duration", "number_of_contacts"]

@@ -16,12 +16,12 @@ from impactlab.study.adaptive.recommendation import (
     recommend,
     recommended_grid,
 )
+from impactlab.study.design import design
 from impactlab.study.engine import Engine
-from impactlab.study.errors import StudyError
-from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import read_study
 from impactlab.study.steps import resolved as resolved_study
 from impactlab.study.store import holder
+from impactlab.validation.errors import StudyError
 from impactlab.verification.solutions import modal
 
 ROOT = Path(__file__).parents[4]

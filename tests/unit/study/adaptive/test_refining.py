@@ -7,9 +7,9 @@ import pytest
 
 from impactlab.analysis.analyse import analyse
 from impactlab.study.adaptive.sobol import base_samples, refine_cases
+from impactlab.study.design import design
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.sampling.design import design
 from impactlab.study.schema.files import study_of_text
 
 STUDY = """

@@ -7,8 +7,8 @@ import json
 import pytest
 from ruamel.yaml import YAML
 
-from impactlab.study.errors import StudyError
 from impactlab.study.schema.files import read_study
+from impactlab.validation.errors import StudyError
 
 GRID = """
 title: A grid

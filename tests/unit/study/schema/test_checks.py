@@ -6,11 +6,12 @@ import json
 
 import pytest
 
+from impactlab.analysis.catalogue import ANALYSES
+from impactlab.methods import NO_DISTRIBUTION
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import flatten
-from impactlab.study.sampling.design import design
-from impactlab.variables import ANALYSES, NO_DISTRIBUTION
+from impactlab.study.design import design
 
 UNIFORM = {"distribution": "uniform", "low": 1, "high": 2}
 

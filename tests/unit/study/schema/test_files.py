@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d.wing import SIZES
+from impactlab.methods.grid import Grid
+from impactlab.methods.sobol import Sobol
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
 from impactlab.model.parameters import PARAMETERS, flatten
-from impactlab.study.errors import StudyError
-from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.samples import Sobol
 from impactlab.study.schema.files import read_any, read_study, read_verification
 from impactlab.study.schema.study import Analysis, Store, Study, Verification
+from impactlab.validation.errors import StudyError
 from impactlab.variables import RESPONSES
 from impactlab.verification.catalogue import CATALOGUE
 

@@ -86,7 +86,11 @@ WRONG_IN_SAMPLE = [
     ("parameters.points", 3, "cannot be sampled: vary it in a study with method: grid"),
     ("parameters.rule", ["lobatto"], "takes words: write {distribution: choice, values: [lobatto"),
     ("parameters.velocity", [1, 2], "expected a mapping with the key distribution"),
-    ("correlations", [["velocity", "beam_depth", 0.5]], "method: delta, pawn or regression"),
+    (
+        "correlations",
+        [["velocity", "beam_depth", 0.5]],
+        "method: latin, delta, pawn, rbd_fast or regression",
+    ),
     ("correlation", 0.5, "Morris and FAST indices assume independent parameters"),
     ("covariance_matrix", [[1]], "give them one index together (groups)"),
     ("copula", "gauss", "vary the quantities that they depend on"),

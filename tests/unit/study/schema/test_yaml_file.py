@@ -4,8 +4,8 @@ import time
 
 import pytest
 
-from impactlab.study.errors import StudyError
 from impactlab.study.schema.files import read_study
+from impactlab.validation.errors import StudyError
 
 NO_STUDY = {
     "nothing": ("", "holds no keys"),

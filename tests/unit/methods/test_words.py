@@ -11,9 +11,9 @@ import pytest
 
 import impactlab as il
 from impactlab.study.adaptive.recommendation import corner_cases
-from impactlab.study.errors import StudyError
 from impactlab.study.estimate import estimate
 from impactlab.study.schema.files import study_of_text
+from impactlab.validation.errors import StudyError
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 

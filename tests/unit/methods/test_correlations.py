@@ -10,11 +10,11 @@ import xarray as xr
 from scipy import stats
 
 import impactlab as il
-from impactlab.analysis.responses import correlations
-from impactlab.model.distributions import contradicting
-from impactlab.study.errors import StudyError
-from impactlab.study.sampling import METHODS
+from impactlab.methods import METHODS
+from impactlab.methods.hypercube import Hypercube, contradicting
+from impactlab.methods.runs import correlations
 from impactlab.study.schema.files import study_of_text
+from impactlab.validation.errors import StudyError
 
 NUMBERS = {
     "beam_depth": {"distribution": "uniform", "low": 0.02, "high": 0.03},
@@ -142,7 +142,9 @@ def test_a_matrix_of_ranks_may_be_possible_where_its_copula_is_not():
         assert (contradicting("abcd", pairs) == []) is none
 
 
-@pytest.mark.parametrize("method", sorted(METHODS.keys() - {"delta", "pawn", "regression"}))
+@pytest.mark.parametrize(
+    "method", sorted(name for name, kind in METHODS.items() if not issubclass(kind, Hypercube))
+)
 def test_other_methods_refuse_with_the_reason(problem, method):
     uniform = {"distribution": "uniform", "low": 1, "high": 2}
     numbers = dict.fromkeys(("velocity", "gravity"), [1, 2] if method == "grid" else uniform)
@@ -150,7 +152,7 @@ def test_other_methods_refuse_with_the_reason(problem, method):
     section = {"method": method, "correlations": given, "parameters": numbers}
     where, said = problem(study={"sampling": section | OWN.get(method, {})})
     assert where == "correlations"
-    assert "method: delta, pawn or regression" in said
+    assert "method: latin, delta, pawn, rbd_fast or regression" in said
     assert "Morris and FAST indices assume independent parameters" in said
 
 

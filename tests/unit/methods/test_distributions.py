@@ -8,7 +8,7 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
-from impactlab.model.distributions import arguments, cumulative, quantile
+from impactlab.methods.distributions import distribution_of
 
 GAUSS = NormalDist(345e6, 25e6)
 CASES = {
@@ -33,17 +33,19 @@ CASES = {
 def test_value_and_probability_are_those_of_the_closed_form(name: str) -> None:
     given, value, probability = CASES[name]
     attributes = {"units": "m", "distribution": name} | given
-    assert cumulative(attributes, value) == pytest.approx(probability, rel=1e-12)
-    assert quantile(attributes, probability) == pytest.approx(value, rel=1e-12)
+    assert distribution_of(attributes).cumulative(value) == pytest.approx(probability, rel=1e-12)
+    assert distribution_of(attributes).quantile(probability) == pytest.approx(value, rel=1e-12)
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_one_undoes_the_other_and_draws_keep_to_the_bounds(name: str) -> None:
     given = {"distribution": name} | CASES[name][0]
     probability = np.array([[2.0**-31, 0.2, 0.5], [0.9, 0.999, 1 - 2.0**-31]])
-    values = quantile(given, probability)
+    values = distribution_of(given).quantile(probability)
     assert values.shape == probability.shape
-    np.testing.assert_allclose(cumulative(given, values), probability, rtol=1e-6, atol=1e-13)
+    np.testing.assert_allclose(
+        distribution_of(given).cumulative(values), probability, rtol=1e-6, atol=1e-13
+    )
     assert values.min() >= given.get("low", -np.inf)
     assert values.max() <= given.get("high", np.inf)
 
@@ -51,16 +53,20 @@ def test_one_undoes_the_other_and_draws_keep_to_the_bounds(name: str) -> None:
 def test_bounds_are_kept_to_the_last_digit() -> None:
     given = {"distribution": "uniform", "low": 0.3, "high": 0.9}
     assert 0.3 + (0.9 - 0.3) != 0.9  # what the linear formula makes of it
-    assert quantile(given, [0.0, 1.0]).tolist() == [0.3, 0.9]
+    assert distribution_of(given).quantile([0.0, 1.0]).tolist() == [0.3, 0.9]
 
 
 def test_arguments_leave_other_attributes_out() -> None:
     given = {"distribution": "uniform", "low": np.float64(1.0), "high": 2, "units": "m"}
-    assert arguments(given) == {"distribution": "uniform", "low": 1.0, "high": 2.0}
+    assert distribution_of(given).arguments() == {
+        "distribution": "uniform",
+        "low": 1.0,
+        "high": 2.0,
+    }
 
 
 def test_what_is_no_distribution_is_named() -> None:
     with pytest.raises(ValueError, match="unknown distribution 'cauchy': choose from uniform"):
-        quantile({"distribution": "cauchy"}, 0.5)
-    with pytest.raises(ValueError, match="'triangular' needs high, mode"):
-        cumulative({"distribution": "triangular", "low": 0.0}, 0.5)
+        distribution_of({"distribution": "cauchy"})
+    with pytest.raises(ValueError, match="'triangular' needs mode, high"):
+        distribution_of({"distribution": "triangular", "low": 0.0})

@@ -8,28 +8,30 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from impactlab.analysis.sensitivity.indices import METHODS as INDICES
-from impactlab.study.sampling import METHODS
+from impactlab.methods import INDICES, SAMPLES
 
 SETTINGS = {
     "sobol": {"base_samples": 16, "second_order": False},
     "morris": {"trajectories": 12, "levels": 6},
     "fast": {"samples": 1188, "harmonics": 4},
-    "delta": {"samples": 64},
-    "pawn": {"samples": 100},
-    "regression": {"samples": 64},
+    "latin": {"samples": 100, "indices": ["delta", "pawn"]},
 }
+SETTINGS |= {name: {"samples": 100} for name in SAMPLES if name not in SETTINGS}
 methods = pytest.mark.parametrize("method", SETTINGS)
 
 
 def test_every_method_but_the_grid_is_analysed():
-    assert SETTINGS.keys() == METHODS.keys() - {"grid"} == INDICES.keys()
-    assert all(INDICES[name].name == name for name in INDICES)
+    assert SAMPLES.keys() - {"latin"} == INDICES.keys()
+    assert all(
+        kind.label and kind.records[0].name == name
+        for name, kind in SAMPLES.items()
+        if name != "latin"
+    )
 
 
 @methods
 def test_the_docs_list_every_method(method):
-    table = Path(__file__).parents[4] / "docs" / "studies.md"
+    table = Path(__file__).parents[3] / "docs" / "studies.md"
     assert f"| `{method}` | " in table.read_text(encoding="utf-8")
 
 

@@ -1,31 +1,56 @@
-"""Sobol indices from a Saltelli sample, with intervals from its replicates.
+"""Saltelli's sample: its points, and Sobol indices as functions of means over base samples.
 
-A sample consists of independent replicates (see study.sampling.samples.saltelli). The indices are
-functions of means over all base samples; their intervals are those of the jackknife over the
-replicates. The outputs at A and at B have to be uncorrelated, as independent points are: a
-correlation of theirs enters every first-order index.
+A sample consists of independent replicates. The indices are functions of means over all base
+samples; their intervals are those of the jackknife over the replicates. The outputs at A and at B
+have to be uncorrelated, as independent points are: a correlation of theirs enters every first-order
+index.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its stats are loaded when first used
 
-from impactlab.analysis.responses import Sample
-from impactlab.analysis.sensitivity.method import (
-    BY_SAMPLES,
-    PAIR,
-    Index,
-    Method,
-    half_width,
-    leave_one_out,
-)
-from impactlab.analysis.sensitivity.verdict import still
+from impactlab.methods.estimators import leave_one_out
+from impactlab.methods.runs import Sample
 from impactlab.types import Floats
 
+REPLICATES = 8
+"""Independent scrambles of a Sobol sample: fewer widen Student's t, more make each one poorer."""
 _ALONE = 5  # columns of the statistics that belong to no factor: a, b, a^2, b^2, a b
 _ROWS = 1 << 15  # base samples whose statistics are held at a time
+
+
+def saltelli(groups: Sequence[str], base_samples: int, second_order: bool, seed: int) -> Floats:
+    """Draw Saltelli's sample in the unit cube, (runs, parameter), base sample by base sample.
+
+    groups: the group of each parameter. The runs of a base sample are the points A, A with the
+    columns of each group from B, with second_order B with the columns of each group from A, and B.
+
+    A and B are the halves of the points of one Sobol sequence, whose dimensions may depend on each
+    other four at a time (such as i and j of A and of B), so that the outputs at A and B correlate
+    however many points there are. Base sample k is therefore point k // REPLICATES of replicate
+    k % REPLICATES: a sequence with a scramble of its own, which makes such a correlation as often
+    positive as negative, and an order of its own of the dimensions. The spread of the replicates
+    tells the error (L'Ecuyer et al. 2023, Proc. Winter Simulation Conf.), and the first base
+    samples are the smaller sample.
+    """
+    count, dimensions = min(REPLICATES, base_samples), 2 * len(groups)
+    points = np.empty((base_samples, dimensions))
+    for place, stream in enumerate(np.random.SeedSequence(seed).spawn(count)):
+        rng = np.random.default_rng(stream)
+        order = rng.permutation(dimensions)
+        sequence = scipy.stats.qmc.Sobol(dimensions, rng=rng)
+        points[place::count] = sequence.random(base_samples // count)[:, order]
+    names = list(dict.fromkeys(groups))
+    swapped = np.array([[group == name for group in groups] for name in names])
+    every_group = np.ones((1, len(groups)), bool)
+    from_b = np.concatenate([~every_group, swapped, *[~swapped] * second_order, every_group])
+    a, b = points[:, None, : len(groups)], points[:, None, len(groups) :]
+    return np.where(from_b, b, a).reshape(-1, len(groups))
 
 
 @dataclass(frozen=True)
@@ -155,100 +180,3 @@ def estimates(means: Floats, factors: int) -> dict[str, Floats]:
 
 def _positive(variance: Floats) -> Floats:
     return np.where(variance > np.finfo(float).eps, variance, np.nan)
-
-
-HALVINGS = 5  # number of halvings of the sample that show how its indices settle: from N/32 on
-FEWEST = 8  # base samples below which halves are not shown
-CHANCE = 0.001  # of independent base samples whose correlation exceeds its noise
-JANON = (
-    "Janon et al. (2014), ESAIM Probab. Stat. 18, 342, eq. 6, with the covariance of both base "
-    "samples as control variate"
-)
-JANSEN = "Jansen (1999), Comput. Phys. Commun. 117, 35, with the variance of the same runs"
-_NESTED = "from the first base samples alone, which are a smaller sample of the same kind"
-_INDICES = {
-    "first_order": Index("first-order Sobol index", JANON),
-    "total_order": Index("total-order Sobol index", JANSEN),
-    "second_order": Index("second-order Sobol index", JANON, PAIR),
-    "first_order_by_samples": Index(
-        "first-order Sobol index by base samples", JANON, BY_SAMPLES, comment=_NESTED
-    ),
-    "total_order_by_samples": Index(
-        "total-order Sobol index by base samples", JANSEN, BY_SAMPLES, comment=_NESTED
-    ),
-    "base_correlation": Index(
-        "correlation of the response between the two base samples, A and B",
-        "Pearson, with the mean and the variance of both",
-        (),
-        interval=False,
-        comment="it enters every first-order index, and is 0 for independent base samples",
-    ),
-    "base_correlation_noise": Index(
-        f"magnitude that the correlation exceeds by chance in {CHANCE:.1%} of samples",
-        "jackknife over the replicates, with Student's t",
-        (),
-        interval=False,
-    ),
-}
-
-
-def check(sample: Sample) -> None:
-    """Raise ValueError where the sample has no replicates, or another number of runs."""
-    if "replicates" not in sample.settings:
-        raise ValueError(
-            f"{sample.study} has a sample of an earlier version of impactlab, whose first-order "
-            "indices may be wrong by more than their intervals: draw it again with `impactlab "
-            "design`, then solve it"
-        )
-    base, factors = sample.number("base_samples"), len(sample.factors)
-    size = f"{base} base samples of {factors} {'groups' if sample.groups else 'parameters'}"
-    sample.expect(base * step(sample), size)
-
-
-def base_samples(sample: Sample) -> list[int]:
-    """Return the sizes of the nested samples, up to the whole one."""
-    largest = sample.number("base_samples")
-    sizes = [largest >> halving for halving in range(HALVINGS, 0, -1)]
-    return [size for size in sizes if size >= FEWEST] + [largest]
-
-
-def varying(outputs: Floats, sample: Sample) -> list[Floats]:
-    """Return the outputs that have to vary: the variance comes from the two base samples."""
-    size = step(sample)
-    return [np.concatenate([outputs[::size], outputs[size - 1 :: size]])]
-
-
-def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
-    series = [_of_first(size, outputs, sample) for size in base_samples(sample)]
-    indices, gap = dict(series[-1]), np.full(len(sample.factors), np.nan)
-    for order in ("first_order", "total_order"):
-        for ending in ("", "_interval"):
-            values = [part.get(f"{order}{ending}", gap) for part in series]
-            indices[f"{order}_by_samples{ending}"] = np.stack(values)
-    return indices
-
-
-def _of_first(size: int, outputs: Floats, sample: Sample) -> dict[str, Floats]:
-    """Return the indices on the first base samples; none where these do not vary."""
-    start, factors = outputs[: size * step(sample)], len(sample.factors)
-    if still(start, varying(start, sample)):
-        return {}
-    interactions = start.size == outputs.size  # pairs have no indices by samples
-    replicated = estimates(Outputs.of(start, sample).means(interactions), factors)
-    indices = {name: values[0] for name, values in replicated.items()}
-    for name in replicated.keys() - {"base_correlation"}:
-        indices[f"{name}_interval"] = half_width(replicated[name][1:], sample.confidence)
-    indices["base_correlation_noise"] = half_width(replicated["base_correlation"][1:], 1 - CHANCE)
-    for name in {"second_order", "second_order_interval"} & indices.keys():
-        indices[name] = _matrix(indices[name], factors)
-    return indices
-
-
-def _matrix(values: Floats, factors: int) -> Floats:
-    """Return values of pairs as a symmetric matrix, NaN on its diagonal."""
-    matrix = np.full((factors, factors), np.nan)
-    matrix[np.triu_indices(factors, 1)] = values
-    return np.where(np.isnan(matrix), matrix.T, matrix)
-
-
-METHOD = Method("sobol", _INDICES, check, _estimate, varying)

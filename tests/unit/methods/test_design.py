@@ -7,17 +7,18 @@ import pytest
 import xarray as xr
 from SALib.analyze import sobol as sobol_analysis
 
+from impactlab.analysis.catalogue import ANALYSES
 from impactlab.fem3d.wing import SIZES
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS
+from impactlab.study.design import doubled
 from impactlab.study.engine import Engine
-from impactlab.study.errors import StudyError
 from impactlab.study.estimate import estimate
 from impactlab.study.execute import execute
 from impactlab.study.runs import Work
-from impactlab.study.sampling.design import doubled
 from impactlab.study.schema.files import study_of_text
-from impactlab.variables import ANALYSES, RESPONSES
+from impactlab.validation.errors import StudyError
+from impactlab.variables import RESPONSES
 
 GRID = """
 title: A grid

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from dataclasses import dataclass
 from math import prod
-from typing import Annotated, Any, Generic, Literal, Self, TypeVar
+from typing import Annotated, Any, Generic, Self, TypeVar
 
 import numpy as np
 from pydantic import Field, TypeAdapter, ValidationInfo, model_validator
 
+from impactlab.methods.sampling import Sampling
 from impactlab.model.parameters import Parameter, Value
-from impactlab.study.sampling.sections import Sampling
-from impactlab.study.schema.parameters import value_type
-from impactlab.study.schema.section import Section, Whole, at_key, one_of
-from impactlab.study.validity import check_alone
+from impactlab.validation.refusals import check_alone
+from impactlab.validation.section import Section, Whole, at_key, one_of
+from impactlab.validation.values import value_type
 
 Q = TypeVar("Q", bound=float)
 MOST_VALUES = 10_000
@@ -57,15 +57,22 @@ class Range(Section, Generic[Q]):
         return [int(value) for value in values]
 
 
+@dataclass(frozen=True, kw_only=True)
 class Grid(Sampling):
-    """The section `sampling` with method: grid.
+    """A grid: all combinations of the listed values are runs, the last parameter changing fastest.
 
-    Combinations of the listed values are runs, the last parameter changing fastest.
-    parameters: distinct values (SI numbers, or words) by parameter.
+    Parameters
+    ----------
+    parameters : mapping of str to sequence of Quantity
+        Values by name of the parameter (docs/studies.md lists the names).
+
+    Examples
+    --------
+    >>> speeds = il.Grid(parameters={"velocity": ["50 cm/s", 1, 2], "contact": ["hertz", "mjg"]})
     """
 
-    method: Literal["grid"]
-    parameters: Mapping[str, tuple[Value, ...]]
+    label = "grid"
+    no_distribution = "the runs of a grid have no probabilities"
 
     @staticmethod
     def read_entry(parameter: Parameter, data: Any, info: ValidationInfo) -> tuple[Value, ...]:

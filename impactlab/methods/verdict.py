@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.verdicts import ROUND_OFF, Verdict, distinct
 from impactlab.types import Floats
+from impactlab.verdicts import ROUND_OFF, Verdict, distinct
 
 MOSTLY = 0.9
 """Share of runs with one and the same value from which on a response is mostly constant."""
@@ -18,11 +18,6 @@ TAIL, TAIL_SHARE = 0.01, 0.5
 WIDE = 0.1
 """Half-width from which on an interval is wide: of an index that is a share, or, of a mean
 elementary effect, relative to the largest one."""
-LINEAR = 0.7
-"""Share of the variance from which on a regression describes a response (Saltelli et al. 2008,
-Global Sensitivity Analysis, section 1.2.5)."""
-
-_JUDGED = ("first_order", "total_order", "delta", "pawn", "regression", "rank_regression")
 
 
 class SensitivityVerdict(Verdict):
@@ -116,29 +111,18 @@ def tail(outputs: Floats) -> float:
     return float(squares[-max(1, round(TAIL * squares.size)) :].sum() / squares.sum())
 
 
-def of_indices(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
-    """Return the verdicts on the indices of one response; empty for the best."""
-    verdicts = []
-    margins = [indices[f"{name}_interval"] for name in _JUDGED if name in indices]
-    if "morris_mu_star" in indices:
-        margins.append(indices["morris_mu_star_interval"] / indices["morris_mu_star"].max())
-    if not all((margin <= WIDE).all() for margin in margins):
-        verdicts.append(SensitivityVerdict.WIDE_INTERVALS)
-    if "rank_regression" in indices:
-        explained = (indices["regression_r_squared"], indices["rank_regression_r_squared"])
-        if max(map(float, explained)) < LINEAR:
-            verdicts.append(SensitivityVerdict.NOT_LINEAR)
-    if "total_order" in indices:
-        orders = ("first_order", "first_order_interval", "total_order", "total_order_interval")
-        if inconsistent(*(indices[name] for name in orders)):
-            verdicts.append(SensitivityVerdict.INCONSISTENT)
-    if "base_correlation" in indices:
-        noise = max(float(indices["base_correlation_noise"]), ROUND_OFF)
-        if abs(float(indices["base_correlation"])) > noise:
-            verdicts.append(SensitivityVerdict.DEPENDENT_BASES)
-    if "delta" in indices and np.isnan(indices["delta"]).any():
-        verdicts.append(SensitivityVerdict.NO_DENSITY)
-    return verdicts
+def wide(*margins: Floats) -> list[SensitivityVerdict]:
+    """Return the verdict on half-widths of intervals of shares: empty unless one is wide."""
+    narrow = all((margin <= WIDE).all() for margin in margins)
+    return [] if narrow else [SensitivityVerdict.WIDE_INTERVALS]
+
+
+def of_orders(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
+    """Return the verdicts on first and total orders and their intervals."""
+    first, total = "first_order", "total_order"
+    values = [indices[f"{order}{end}"] for order in (first, total) for end in ("", "_interval")]
+    contradiction = [SensitivityVerdict.INCONSISTENT] * inconsistent(*values)
+    return wide(values[1], values[3]) + contradiction
 
 
 def inconsistent(first: Floats, first_margin: Floats, total: Floats, total_margin: Floats) -> bool:

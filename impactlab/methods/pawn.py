@@ -10,28 +10,42 @@ median is that over the runs.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 
-from impactlab.analysis.responses import Sample
-from impactlab.analysis.sensitivity.method import Index, Method, dummy_column
+from impactlab.methods.estimators import dummy_column
+from impactlab.methods.hypercube import Hypercube
+from impactlab.methods.record import Family, IndexVariable, Indices, Measure
+from impactlab.methods.runs import Sample
+from impactlab.methods.verdict import SensitivityVerdict, wide
 from impactlab.types import Floats
 
 SLIDES = 10  # classes of a parameter's values, as in SALib
 FEWEST = 10  # runs that a slide needs on average
 _2018 = "Pianosi and Wagener (2018), Environ. Model. Softw. 108, 197"
 _INTERVAL = "of the index with ten slides; half-width: what shuffled runs stay below"
-_INDICES = {
-    "pawn": Index(
+_VARIABLES = {
+    "pawn": IndexVariable(
         "PAWN index, median over the slides", f"{_2018}, eqs. 2 and 3", comment=_INTERVAL
     ),
-    "pawn_maximum": Index(
+    "pawn_maximum": IndexVariable(
         "PAWN index, maximum over the slides", f"{_2018}, eqs. 2 and 3", comment=_INTERVAL
     ),
-    "dummy_pawn": Index(
+    "dummy_pawn": IndexVariable(
         "PAWN index of a dummy", f"{_2018}, section 2.3", (), comment="the mean of shuffled runs"
     ),
 }
+FAMILY = Family(
+    "pawn_indices",
+    "PAWN indices",
+    (Measure("pawn", "median"), Measure("pawn_maximum", "largest", optional=True)),
+    "Kolmogorov-Smirnov distance (–)",
+    "Distance between the distribution of a response and the same with the parameter held in one "
+    "part of its range: median and largest over the parts (Pianosi and Wagener).",
+)
 
 
 def _check(sample: Sample) -> None:
@@ -101,4 +115,38 @@ def distances(members: npt.NDArray[np.bool_], last: npt.NDArray[np.intp]) -> Flo
     return np.asarray(np.abs(apart).max(axis=0))
 
 
-METHOD = Method("pawn", _INDICES, _check, _estimate)
+def _judge(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
+    return wide(indices["pawn_interval"])
+
+
+INDICES = Indices("pawn", _VARIABLES, FAMILY, _check, _estimate, _judge, fewest=SLIDES * FEWEST)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pawn(Hypercube):
+    """A Latin hypercube for PAWN indices.
+
+    Parameters
+    ----------
+    parameters : mapping of str to distribution or Quantity
+        Distribution, or one fixed value, by name of the parameter.
+    seed : int, default 1
+        Equal seeds give equal runs.
+    samples : int
+        Number of runs, at least 100.
+    correlations : sequence of (str, str, float), optional
+        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
+        pairs are independent.
+
+    References
+    ----------
+    Pianosi and Wagener (2018), Environ. Model. Softw. 108, 197, eqs. 2 and 3.
+
+    Examples
+    --------
+    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
+    >>> sample = il.Pawn(samples=128, parameters={"velocity": speed, "beam_depth": depth})
+    """
+
+    records = (INDICES,)
+    label = "Latin hypercube for PAWN indices"

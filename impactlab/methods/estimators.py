@@ -1,4 +1,4 @@
-"""Records of an index and of a method, the bootstrap, and the jackknife.
+"""What estimators of indices share: a dummy parameter, the bootstrap, and the jackknife.
 
 The bootstrap resamples functions of means by matrix products: the mean over a resample is the mean
 weighted by how often each row was drawn, so that all resamples together are one product of counts
@@ -9,55 +9,12 @@ Bootstrap, sections 6.2 and 20.2.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 import scipy  # its stats are loaded when first used
 
-from impactlab.analysis.responses import Sample
+from impactlab.methods.runs import Sample
 from impactlab.types import Floats
-
-PAIR = ("parameter", "other_parameter")
-BY_SAMPLES = ("base_samples", "parameter")
-
-
-@dataclass(frozen=True)
-class Index:
-    """One index of a response.
-
-    estimator: its source, with the equation; dims: those beside `response`; units: None where it
-    has the unit of its response; interval: whether it comes with one; comment: what a reader of
-    the number has to know.
-    """
-
-    long_name: str
-    estimator: str
-    dims: tuple[str, ...] = ("parameter",)
-    units: str | None = "1"
-    interval: bool = True
-    comment: str = ""
-
-    @classmethod
-    def of_dummy(cls, long_name: str, estimator: str) -> Index:
-        """Return the index of a dummy parameter, see `dummy_column`."""
-        return cls(long_name, estimator, (), comment="of a random column that the model never saw")
-
-
-@dataclass(frozen=True)
-class Method:
-    """One method of sensitivity analysis.
-
-    name: as in study files. indices: by variable name. check: raises ValueError where the runs are
-    not the sample that their attributes describe. estimate: from finite and varying outputs
-    (runs,), the sample and the response's name to indices and half-widths, by variable name.
-    varying: the parts of the outputs each of which has to vary.
-    """
-
-    name: str
-    indices: Mapping[str, Index]
-    check: Callable[[Sample], None]
-    estimate: Callable[[Floats, Sample, str], dict[str, Floats]]
-    varying: Callable[[Floats, Sample], list[Floats]] = lambda outputs, sample: [outputs]
 
 
 def dummy_column(sample: Sample) -> Floats:

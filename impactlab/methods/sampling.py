@@ -1,34 +1,33 @@
-"""The base classes of the section `sampling`."""
+"""Base classes of methods of sampling: sections `sampling` of a study, and objects in Python."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
 from functools import partial
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import (
-    BeforeValidator,
     Field,
     PlainValidator,
+    TypeAdapter,
     ValidationInfo,
     field_validator,
     model_validator,
 )
 
-from impactlab.model.distributions import ARGUMENTS, CHOICE
+from impactlab.methods.distributions import CHOICE, DISTRIBUTIONS, ENTRIES, Choice, Entry, Fixed
+from impactlab.methods.record import Indices
+from impactlab.methods.runs import Sample
 from impactlab.model.parameters import Parameter, Value
-from impactlab.study.errors import unknown
-from impactlab.study.schema.parameters import (
-    LABEL,
-    Choice,
-    Distribution,
-    Fixed,
-    distribution_section,
-)
-from impactlab.study.schema.section import Names, Section, Whole, at_key, by_name, name_at
 from impactlab.types import Floats
+from impactlab.validation.errors import unknown
+from impactlab.validation.section import Names, Whole, at_key, by_name, name_at
+from impactlab.validation.stated import Stated
+from impactlab.validation.values import LABEL
 
 MOST_RUNS = 10_000_000
 _EDGE = 2.0**-31
@@ -36,19 +35,23 @@ _EDGE = 2.0**-31
 infinite."""
 
 
-_NEEDS_ORDER = {
-    "morris": "steps from level to level",
-    "fast": "moves along the values in waves",
-    "regression": "fits a slope over the values",
-}
-"""Methods without words, and why."""
+@dataclass(frozen=True, kw_only=True)
+class Sampling(Stated):
+    """The section `sampling`: the parameters, in the order of the file.
 
+    label: the sample in words. no_distribution: why its runs do not represent the distribution of a
+    response; "" where they do.
+    """
 
-class Sampling(Section):
-    """The section `sampling`: the parameters, in the order of the file."""
-
-    method: str
+    _name_key = "method"
+    label: ClassVar[str]
+    no_distribution: ClassVar[str] = ""
     parameters: Mapping[str, Any]
+
+    @property
+    def method(self) -> str:
+        """Name of the method in study files."""
+        return self.name()
 
     @staticmethod
     @abstractmethod
@@ -99,29 +102,65 @@ class Sampling(Section):
     @model_validator(mode="after")
     def _check_counts(self) -> Self:
         if not self.varied:
-            reason = f"too few: method {self.method} varies 1 or more"
-            raise at_key("parameters", reason + " (fixed ones do not count)" * bool(self.fixed))
+            count = " (fixed ones do not count)" if self.fixed else ""
+            reason = f"too few: method {self.method} varies 1 or more{count}"
+            raise at_key("parameters", reason)
         if self.runs > MOST_RUNS:
             raise ValueError(f"makes {self.runs:,} runs: reduce them to {MOST_RUNS:,} or fewer")
         return self
 
 
-class Sample(Sampling):
+@dataclass(frozen=True, kw_only=True)
+class RandomSample(Sampling):
     """Draws of one parameter or more.
 
     seed: equal seeds give equal draws; 0 is a seed like any other. parameters: a distribution, a
-    choice of words or one fixed value each.
+    choice of words or one fixed value each. records: the indices that it has by itself. even: True
+    where draws spread more evenly than random ones. blocks: setting with the number of blocks of
+    runs that are near-copies of each other; "" where all runs are draws of their own.
 
-    Raises ValueError for a choice of words where the method needs an order of the values.
+    Raises ValueError for a choice of words where an index needs an order of the values.
     """
 
+    records: ClassVar[tuple[Indices, ...]] = ()
+    even: ClassVar[bool] = False
+    blocks: ClassVar[str] = ""
     seed: Annotated[Whole, Field(ge=0, le=2**32 - 1)] = 1
-    parameters: Mapping[str, Distribution | Choice | Fixed]
+
+    @property
+    def estimates(self) -> tuple[Indices, ...]:
+        """Indices that the analysis estimates."""
+        return self.records
 
     @staticmethod
-    def read_entry(
-        parameter: Parameter, data: Any, info: ValidationInfo
-    ) -> Distribution | Choice | Fixed:
+    def independent(sample: Sample) -> NDArray[np.int64]:
+        """Return the numbers of the runs that are draws of their own."""
+        return np.arange(sample.size)
+
+    @staticmethod
+    def near_runs(sample: Sample, length: int) -> int:
+        """Return how many runs in a row are alike, in blocks of a length."""
+        return length
+
+    def stated(self) -> dict[str, Any]:
+        """Return the section as a study file has it, with single values as fixed parameters.
+
+        Returns
+        -------
+        dict
+            Keys and values of the section.
+        """
+        section = super().stated()
+        parameters = section.pop("parameters")
+        if isinstance(parameters, Mapping):
+            parameters = {
+                name: item if isinstance(item, dict) else Fixed(item).stated()
+                for name, item in parameters.items()
+            }
+        return section | {"parameters": parameters}
+
+    @staticmethod
+    def read_entry(parameter: Parameter, data: Any, info: ValidationInfo) -> Entry:
         """Read a distribution within the model's limits, a choice of words, or a fixed value."""
         kind = data.get("distribution") if isinstance(data, dict) else None
         if parameter.choices and kind not in (CHOICE, "fixed"):
@@ -137,31 +176,40 @@ class Sample(Sampling):
             )
         if kind == CHOICE and not (parameter.choices or parameter.any_word):
             raise at_key(
-                "distribution", f"is for words, and this is a number: use {', '.join(ARGUMENTS)}"
+                "distribution",
+                f"is for words, and this is a number: use {', '.join(DISTRIBUTIONS)}",
             )
-        name = name_at("distribution", (*ARGUMENTS, CHOICE, "fixed"), data)
-        return distribution_section(name, parameter).model_validate(data, context=info.context)
+        name = name_at("distribution", ENTRIES, data)
+        context = {**(info.context or {}), "parameter": parameter}
+        return ENTRIES[name].read(data, context)
 
     @model_validator(mode="after")
     def _check_words(self) -> Self:
-        if self.words and (needs := _NEEDS_ORDER.get(self.method)):
-            reason = (
-                f"cannot be drawn by method {self.method}, which {needs}, and words have no order: "
-                "use method sobol, delta or pawn, or fix it ({distribution: fixed, value: ...})"
-            )
-            raise at_key(f"parameters.{self.words[0]}.distribution", reason)
+        for indices in self.estimates if self.words else ():
+            if indices.order:
+                method = self.method
+                if method != indices.name:
+                    method += f" with the indices {indices.name}"
+                reason = (
+                    f"cannot be drawn by method {method}, which {indices.order}, and words have no "
+                    "order: use method sobol, delta or pawn, or fix it ({distribution: fixed, "
+                    "value: ...})"
+                )
+                raise at_key(f"parameters.{self.words[0]}.distribution", reason)
         return self
 
     @property
     def settings(self) -> dict[str, Any]:
         """The attributes of a design that describe its draws: the other keys of the section."""
-        keys = self.model_dump(exclude={"method", "parameters", "groups", "until", "correlations"})
-        return {key: int(value) for key, value in keys.items()}
+        values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        return {name: int(value) for name, value in values.items() if isinstance(value, int)}
 
     def bounds(self) -> dict[str, tuple[Value, ...]]:
         """Return low and high of the bounded distributions, all words, and the fixed values."""
         ends = {
-            name: entry.values if isinstance(entry, Choice) else tuple(entry.bounds().values())
+            name: tuple(entry.values)
+            if isinstance(entry, Choice)
+            else tuple(entry.bounds().values())
             for name, entry in self.varied.items()
         } | {name: (value,) for name, value in self.fixed.items()}
         return {name: values for name, values in ends.items() if values}
@@ -182,7 +230,7 @@ class Sample(Sampling):
         return {name: entry.quantile(draws) for (name, entry), draws in columns}
 
 
-def _check_names(data: Any) -> Any:
+def _read_groups(data: Any) -> Mapping[str, tuple[str, ...]]:
     if not isinstance(data, dict):
         raise ValueError("expected a mapping such as {steel: [beam_density, beam_yield_stress]}")
     if odd := [name for name in data if not isinstance(name, str) or not LABEL.fullmatch(name)]:
@@ -190,10 +238,11 @@ def _check_names(data: Any) -> Any:
             f"{odd[0]!r} cannot name a group: use letters, digits, _ and -, starting with a "
             "letter or a digit"
         )
-    return data
+    return TypeAdapter(Mapping[str, Names]).validate_python(data)
 
 
-class Grouped(Sample):
+@dataclass(frozen=True, kw_only=True)
+class Grouped(RandomSample):
     """A sample that gives one index per group of parameters.
 
     groups: the varied parameters of each group by its name; a parameter that is not named is a
@@ -203,7 +252,7 @@ class Grouped(Sample):
     of one group alone, and there are two groups or more.
     """
 
-    groups: Annotated[Mapping[str, Names], BeforeValidator(_check_names)] = Field(
+    groups: Annotated[Mapping[str, Sequence[str]], PlainValidator(_read_groups)] = field(
         default_factory=dict
     )
 

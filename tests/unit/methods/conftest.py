@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from impactlab.study.sampling.design import design
+from impactlab.study.design import design
 from impactlab.study.schema.files import study_of_text
 
 BOX = {"velocity": (1.0, 2.0), "beam_depth": (0.02, 0.03), "gravity": (0.0, 10.0)}

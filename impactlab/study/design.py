@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.responses import listed
+from impactlab.methods.grid import Grid
+from impactlab.methods.runs import listed
+from impactlab.methods.sobol import Sobol
 from impactlab.model.parameters import flatten, with_values
-from impactlab.study.errors import Problem, StudyError
-from impactlab.study.sampling.grid import Grid
-from impactlab.study.sampling.samples import Sobol
 from impactlab.study.schema.checks import further_models
 from impactlab.study.schema.files import study_of_text
 from impactlab.study.schema.study import FunctionStudy, Study
 from impactlab.study.solvers import run_shape
+from impactlab.validation.errors import Problem, StudyError
 from impactlab.variables import described
 from impactlab.verification.functions import FUNCTIONS
 
@@ -87,8 +87,8 @@ def doubled(small: xr.Dataset) -> xr.Dataset:
             f"study {study.name!r} has method: {study.sampling.method}, but only a sample with "
             "method: sobol can be extended"
         )
-    twice = {"base_samples": 2 * int(small.attrs["base_samples"])}
-    large = design(replace(study, sampling=study.sampling.model_copy(update=twice)))
+    twice = replace(study.sampling, base_samples=2 * int(small.attrs["base_samples"]))
+    large = design(replace(study, sampling=twice))
     for name in listed(small, "varied"):
         if not np.array_equal(small[name].values, large[name].values[: small.sizes["run"]]):
             raise ValueError(

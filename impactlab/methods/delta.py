@@ -18,12 +18,18 @@ Gamboa et al. (2022). Neighbours share hardly any noise, so that few runs do not
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 import scipy  # its stats are loaded when first used
 
-from impactlab.analysis.responses import Sample
-from impactlab.analysis.sensitivity.method import Index, Method, apart_from_dummy, dummy_column
+from impactlab.methods.estimators import apart_from_dummy, dummy_column
+from impactlab.methods.hypercube import Hypercube
+from impactlab.methods.record import Family, IndexVariable, Indices, Measure
+from impactlab.methods.runs import Sample
+from impactlab.methods.verdict import SensitivityVerdict, wide
 from impactlab.types import Floats
 
 GRID = 200  # places at which densities are compared
@@ -33,24 +39,32 @@ COARSE = 20  # resamples for the bias of the estimate with half the classes and 
 Mask = npt.NDArray[np.bool_]
 _2013 = "Plischke et al. (2013), Eur. J. Oper. Res. 226, 536"
 _2022 = "Gamboa et al. (2022), Bernoulli 28, 2345, the estimator by ranks"
-_INDICES = {
-    "delta": Index(
+_VARIABLES = {
+    "delta": IndexVariable(
         "delta, moment-independent importance",
         f"{_2013}, eqs. 26 and 30",
         comment="the interval includes the larger of two biases: that of noise, which is the delta "
         "of a dummy, and that of smoothing, 1.5 times the change of delta from half the classes "
         "and twice the width of the kernels",
     ),
-    "delta_first_order": Index(
+    "delta_first_order": IndexVariable(
         "first-order Sobol index from given data",
         _2022,
         comment="below zero by noise alone",
     ),
-    "dummy_delta": Index.of_dummy("delta of a dummy", f"{_2013}, eqs. 26 and 30"),
-    "dummy_delta_first_order": Index.of_dummy(
+    "dummy_delta": IndexVariable.of_dummy("delta of a dummy", f"{_2013}, eqs. 26 and 30"),
+    "dummy_delta_first_order": IndexVariable.of_dummy(
         "first-order Sobol index of a dummy from given data", _2022
     ),
 }
+FAMILY = Family(
+    "delta_indices",
+    "Delta indices",
+    (Measure("delta", "delta"), Measure("delta_first_order", "first order", optional=True)),
+    "Index (–)",
+    "Delta: half the area by which the density of a response changes, on average, once the "
+    "parameter is known (Borgonovo); beside it the first-order index from the same runs.",
+)
 
 
 def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Floats]:
@@ -148,4 +162,39 @@ def _density(
     return np.asarray(sums / (np.sqrt(2 * np.pi) * width * sizes))
 
 
-METHOD = Method("delta", _INDICES, Sample.ungrouped, _estimate)
+def _judge(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
+    empty = bool(np.isnan(indices["delta"]).any())
+    return wide(indices["delta_interval"]) + [SensitivityVerdict.NO_DENSITY] * empty
+
+
+INDICES = Indices("delta", _VARIABLES, FAMILY, Sample.ungrouped, _estimate, _judge, fewest=64)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Delta(Hypercube):
+    """A Latin hypercube for Borgonovo's delta.
+
+    Parameters
+    ----------
+    parameters : mapping of str to distribution or Quantity
+        Distribution, or one fixed value, by name of the parameter.
+    seed : int, default 1
+        Equal seeds give equal runs.
+    samples : int
+        Number of runs, at least 64.
+    correlations : sequence of (str, str, float), optional
+        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
+        pairs are independent.
+
+    References
+    ----------
+    Plischke et al. (2013), Eur. J. Oper. Res. 226, 536, eqs. 26 and 30.
+
+    Examples
+    --------
+    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
+    >>> sample = il.Delta(samples=128, parameters={"velocity": speed, "beam_depth": depth})
+    """
+
+    records = (INDICES,)
+    label = "Latin hypercube for delta indices"

@@ -25,7 +25,7 @@ from pydantic_core import PydanticCustomError
 
 from impactlab.model.parameters import PARAMETERS, Parameter
 from impactlab.model.quantities import si, whole
-from impactlab.study.errors import Problem, StudyError, dotted, unknown
+from impactlab.validation.errors import Problem, StudyError, dotted, unknown
 
 
 class Section(BaseModel):
@@ -157,15 +157,17 @@ _WORDS = {
     "bool_type": "expected true or false",
     "invalid_key": "a key must be a word",
     "model_type": "expected a mapping with keys of its own",
+    "dataclass_type": "expected a mapping with keys of its own",
     "too_short": "is empty: list at least one value",
     "tuple_type": "expected a list of names",
 }
 """Messages for pydantic's types of error, with its numbers; any other keeps its own message."""
 _NOT_HERE = {
     r".*(correlat|covarian|copula).*": (
-        "parameters correlate by the key correlations of the section sampling with method: delta, "
-        "pawn or regression alone; Sobol, Morris and FAST indices assume independent parameters: "
-        "for these vary the quantities that they depend on, give them one index together "
+        "parameters correlate by the key correlations of the section sampling with method: latin, "
+        "delta, pawn, rbd_fast or regression alone; Sobol, Morris and FAST indices assume "
+        "independent parameters: for these vary"
+        " the quantities that they depend on, give them one index together "
         "(groups), or fix all but one ({distribution: fixed, value: ...})"
     ),
     "groups?": "groups belong to the section sampling with method: sobol or morris",
@@ -201,7 +203,7 @@ def _problem(line: Any, data: Any, file: str, keys: Mapping[int, Sequence[str]])
     kind, context = line["type"], line.get("ctx", {})
     path = [*line["loc"], *context["key"].split(".")] if kind == "at_key" else [*line["loc"]]
     parent, present, value = _value_at(data, path)
-    if kind == "extra_forbidden":
+    if kind in ("extra_forbidden", "unexpected_keyword_argument"):
         allowed, key = keys[id(parent)], str(path[-1])
         elsewhere = (
             say

@@ -26,7 +26,7 @@ class StudyError(ValueError):
     --------
     >>> il.Study.from_yaml("nowhere.yaml")
     Traceback (most recent call last):
-    impactlab.study.errors.StudyError: nowhere.yaml: there is no such file
+    impactlab.validation.errors.StudyError: nowhere.yaml: there is no such file
     """
 
     def __str__(self) -> str:

@@ -1,0 +1,176 @@
+"""Latin hypercubes, correlated or not: the sample of every index from given data.
+
+Rank correlations between parameters are those of a Gaussian copula: their distributions stay as
+stated.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, Self
+
+import numpy as np
+import scipy  # its stats are loaded when first used
+from pydantic import Field, PlainValidator, StrictStr, TypeAdapter, model_validator
+
+from impactlab.methods.sampling import MOST_RUNS, RandomSample
+from impactlab.types import Floats
+from impactlab.validation.errors import unknown
+from impactlab.validation.section import Number, Whole, at_key
+
+Correlations = Sequence[tuple[str, str, float]]
+"""Two parameters and Spearman's rank correlation of them; pairs that are not listed have 0."""
+_LEAST = 1e-8  # smallest eigenvalue of a matrix that counts as positive definite
+_FEWEST_OF_WORD = 20
+"""Runs per word: bootstrap resamples then practically never hold fewer than two."""
+
+
+_Triple = tuple[StrictStr, StrictStr, Annotated[Number, Field(gt=-1, lt=1)]]
+
+
+def _read_triples(data: Any) -> Correlations:
+    if not isinstance(data, list) or not all(isinstance(e, list) and len(e) == 3 for e in data):
+        raise ValueError("expected a list of entries such as [beam_depth, beam_width, 0.5]")
+    return TypeAdapter(tuple[_Triple, ...]).validate_python(data)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hypercube(RandomSample):
+    """A Latin hypercube, the same one whatever indices are estimated from it.
+
+    samples: number of runs. correlations: two varied numbers and their rank correlation (Spearman).
+
+    Raises ValueError where too few runs draw a word to tell the distribution of a response, and
+    for correlations that no sample has.
+    """
+
+    even = True
+    samples: Annotated[Whole, Field(le=MOST_RUNS)]
+    correlations: Annotated[Correlations, PlainValidator(_read_triples)] = ()
+
+    @property
+    def runs(self) -> int:
+        """Number of runs: that of the samples."""
+        return self.samples
+
+    @model_validator(mode="after")
+    def _check_fewest(self) -> Self:
+        for indices in self.estimates:
+            if self.samples < indices.fewest:
+                purpose = f" for {indices.name}" if len(self.estimates) > 1 else ""
+                raise at_key("samples", f"must be at least {indices.fewest}{purpose}")
+        return self
+
+    @model_validator(mode="after")
+    def _check_rarest(self) -> Self:
+        for name in self.words:
+            choice = self.varied[name].arguments()
+            weight, word = min(zip(choice["weights"], choice["values"], strict=True))
+            if self.samples * weight < _FEWEST_OF_WORD:
+                reason = (
+                    f"gives {word!r} about {self.samples * weight:.0f} of {self.samples:,} runs, "
+                    f"and {_FEWEST_OF_WORD} are needed: raise samples to "
+                    f"{math.ceil(_FEWEST_OF_WORD / weight):,}, or leave the word out"
+                )
+                raise at_key(f"parameters.{name}", reason)
+        return self
+
+    @model_validator(mode="after")
+    def _check_correlations(self) -> Self:
+        seen: set[frozenset[str]] = set()
+        for index, (*pair, _) in enumerate(self.correlations):
+            for end, name in enumerate(pair):
+                if name in self.fixed:
+                    reason = "is fixed, so nothing correlates with it: take the entry out"
+                elif name in self.words:
+                    reason = "takes words, which have no order to correlate: take the entry out"
+                elif name not in self.varied:
+                    reason = unknown("varied parameter", name, self.varied)
+                elif end and name == pair[0]:
+                    reason = "is named twice: name two different parameters"
+                else:
+                    continue
+                raise at_key(f"correlations.{index}.{end}", reason)
+            if frozenset(pair) in seen:
+                raise at_key(f"correlations.{index}", "is given before: state each pair once")
+            seen.add(frozenset(pair))
+        if wrong := contradicting(list(self.varied), self.correlations):
+            inside = (entry for entry in self.correlations if {*entry[:2]} <= {*wrong})
+            listed = ", ".join(f"{first} with {other} {rank:g}" for first, other, rank in inside)
+            reason = (
+                f"contradict each other ({listed}; pairs that are not listed have 0): the matrix "
+                f"of {', '.join(wrong)} is not positive definite: bring them closer to 0, or state "
+                "the pairs left out"
+            )
+            raise at_key("correlations", reason)
+        return self
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """The attributes of a design that describe its draws."""
+        if not (pairs := self.correlations):
+            return super().settings
+        names = {"correlated": [f"{first} {other}" for first, other, _ in pairs]}
+        return super().settings | names | {"rank_correlations": [rank for *_, rank in pairs]}
+
+    @property
+    def no_surrogate(self) -> str:
+        """The reason why no surrogate is fitted to the runs; "" where one is."""
+        reason = "no surrogate is fitted over correlated parameters: its terms assume independence"
+        return reason if self.correlations else super().no_surrogate
+
+    def draws(self) -> Floats:
+        """Draw one value in each of equal strata of every parameter, whatever the method.
+
+        Correlations change the order of these values alone.
+        """
+        (rng,) = np.random.default_rng(self.seed).spawn(1)  # as in SALib: same bits
+        edges = np.arange(self.samples + 1)[:, None] * (1.0 / self.samples)
+        unit = rng.uniform(edges[:-1], edges[1:], (self.samples, len(self.varied)))
+        for column in unit.T:
+            rng.shuffle(column)
+        if not self.correlations:
+            return unit
+        return correlated(unit, correlation_matrix(list(self.varied), self.correlations))
+
+
+def correlation_matrix(names: Sequence[str], correlations: Correlations) -> Floats:
+    """Return the linear correlations of the normal variables, (names, names).
+
+    They are 2 sin(π ρ / 6) of the rank correlations ρ: Pearson (1907), as in Kruskal (1958), J. Am.
+    Stat. Assoc. 53, 814 (recalled, not read). Pairs with other names are left out.
+    """
+    matrix, place = np.eye(len(names)), {name: i for i, name in enumerate(names)}
+    for first, second, rank in correlations:
+        if first in place and second in place:
+            linear = 2 * np.sin(np.pi * rank / 6)
+            matrix[place[first], place[second]] = matrix[place[second], place[first]] = linear
+    return matrix
+
+
+def contradicting(names: Sequence[str], correlations: Correlations) -> list[str]:
+    """Return the fewest of the names whose correlations exclude each other; none if all can be."""
+
+    def possible(subset: Sequence[str]) -> bool:
+        smallest = np.linalg.eigvalsh(correlation_matrix(subset, correlations)).min(initial=1)
+        return bool(smallest > _LEAST)
+
+    clashing = [] if possible(names) else list(names)
+    for name in clashing.copy():
+        rest = [member for member in clashing if member != name]
+        clashing = clashing if possible(rest) else rest
+    return clashing
+
+
+def correlated(unit: Floats, linear: Floats) -> Floats:
+    """Return the sample with each column in another order, (runs, parameters).
+
+    unit: independent draws in the unit cube, so even as they are; linear: correlation_matrix. The
+    ranks are those of the normal variables with these correlations: Stein (1987), Technometrics 29,
+    143, section 4 (recalled, not read). A column without partners keeps its order.
+    """
+    normal = scipy.stats.norm.ppf(unit) @ np.linalg.cholesky(linear).T
+    ranks = normal.argsort(axis=0, kind="stable").argsort(axis=0)
+    return np.asarray(np.take_along_axis(np.sort(unit, axis=0), ranks, axis=0))
