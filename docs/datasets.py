@@ -13,6 +13,7 @@ import xarray as xr
 import impactlab as il
 from impactlab.analysis.catalogue import ANALYSES
 from impactlab.methods import SAMPLES
+from impactlab.methods.sampling import RandomSample
 from impactlab.model.parameters import PARAMETERS
 from impactlab.variables import FLAGS
 
@@ -78,7 +79,7 @@ def _page(study: partial[il.Study]) -> Iterator[str]:
     yield from _section("Study.run", runs, STORED)
     yield from _section("Study.design", grid.design(), "The coordinates of the runs.")
     yield "## analyse\n\nAn analysis of all responses, by its name in `analyses`.\n"
-    samples = {method: _ishigami(study, method) for method in SAMPLES}
+    samples = {name: _ishigami(study, kind) for name, kind in SAMPLES.items() if kind.records}
     yield from _coordinates(indices)
     yield from _analyses([runs, runs.rename(nodes="element_size"), draws], samples)
     yield "### Numerical uncertainty\n\nFrom `resolution` and `refinement`.\n"
@@ -125,12 +126,10 @@ def _sample(study: partial[il.Study]) -> il.Study:
     )
 
 
-def _ishigami(study: partial[il.Study], method: str) -> xr.Dataset:
-    sampling = getattr(il, method.title())
+def _ishigami(study: partial[il.Study], kind: type[RandomSample]) -> xr.Dataset:
     parameters = {name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}
-    sizes = SIZES.get(method, {"samples": 128})
-    sample = sampling(parameters=parameters, **sizes)
-    return study(title=method, function="ishigami", sampling=sample).run(workers=1)
+    sample = kind(parameters=parameters, **SIZES.get(kind.name(), {"samples": 128}))
+    return study(title=kind.label, function="ishigami", sampling=sample).run(workers=1)
 
 
 def _posterior(study: partial[il.Study]) -> xr.Dataset:
