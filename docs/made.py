@@ -24,7 +24,7 @@ from impactlab.files import read_netcdf, write_netcdf
 from impactlab.report.page import leading
 from impactlab.report.results import FINDINGS
 from impactlab.study import steps
-from impactlab.study.schema.files import read_verification
+from impactlab.study.schema.readers import read_verification
 from impactlab.verification.stored import unpacked
 
 DOCS = Path(__file__).parent

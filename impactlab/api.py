@@ -20,11 +20,12 @@ from impactlab.model.impact import Impact
 from impactlab.model.parameters import PARAMETERS
 from impactlab.model.quantities import Quantity
 from impactlab.study import REFINEMENT, RESOLUTION, steps
-from impactlab.study.schema import files, yaml_file
-from impactlab.study.schema.measurements import Given, read_measurements
+from impactlab.study.ownership import check_unclaimed
+from impactlab.study.schema import readers, yaml_file
+from impactlab.study.schema.declarations import AnyStudy
+from impactlab.study.schema.measurement_files import Given, read_measurements
 from impactlab.study.schema.written import content_of
 from impactlab.study.solvers.own import Function, register, solver_name
-from impactlab.study.stored import check_unclaimed
 from impactlab.validation.errors import Problem, StudyError
 from impactlab.variables import FLAGS, VARIABLES
 
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
     from impactlab.study.engine import Engine
     from impactlab.study.estimate import Estimate
-    from impactlab.study.runs import Status
+    from impactlab.study.inventory import Status
 
 _CORES = cpu_count() or 1
 
@@ -171,10 +172,10 @@ class Study:
             "measurements": measurements,
         }
         self._set(
-            files.study_of_content(_name(title, name), content_of(keys), Path("Study")), results
+            readers.study_of_content(_name(title, name), content_of(keys), Path("Study")), results
         )
 
-    def _set(self, declared: steps.AnyStudy, results: str | Path) -> None:
+    def _set(self, declared: AnyStudy, results: str | Path) -> None:
         self.declared = declared
         """The study as read: impact, discretisation, sampling and the others in SI units."""
         self.folder = steps.results_folder(declared.name, Path(results))
@@ -201,10 +202,10 @@ class Study:
         StudyError
             If the file is wrong, with every problem: file, key, value and remedy.
         """
-        return cls._of(files.read_study(path), results)
+        return cls._of(readers.read_study(path), results)
 
     @classmethod
-    def _of(cls, declared: steps.AnyStudy, results: str | Path = "results") -> Study:
+    def _of(cls, declared: AnyStudy, results: str | Path = "results") -> Study:
         study = cls.__new__(cls)
         study._set(declared, results)
         return study
@@ -324,7 +325,7 @@ class Study:
         ValueError
             If another study has results of this name.
         """
-        declared = files.of_impacts(self.declared)
+        declared = readers.of_impacts(self.declared)
         check_unclaimed(declared, self.folder / "runs.nc")
         return steps.recommend(declared, self.folder / RESOLUTION, _engine(workers))
 

@@ -29,7 +29,7 @@ from impactlab.figures import (
 )
 from impactlab.figures.curves import plan
 from impactlab.methods import INDICES
-from impactlab.study.schema.measurements import read_measurements
+from impactlab.study.schema.measurement_files import read_measurements
 from impactlab.validation.errors import unknown
 
 __all__ = [

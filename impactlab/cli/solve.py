@@ -50,9 +50,9 @@ def recommend(
     from impactlab.report.console import print_recommendation
     from impactlab.study import RESOLUTION, steps
     from impactlab.study.engine import Engine
-    from impactlab.study.schema.files import read_impacts
-    from impactlab.study.schema.study import Auto
-    from impactlab.study.stored import check_unclaimed
+    from impactlab.study.ownership import check_unclaimed
+    from impactlab.study.schema.declarations import Auto
+    from impactlab.study.schema.readers import read_impacts
 
     declared = read_impacts(study)
     path = output or steps.results_folder(declared.name) / RESOLUTION
@@ -82,8 +82,8 @@ def design(
     from impactlab.study import steps
     from impactlab.study.design import design as design_of
     from impactlab.study.engine import Engine
-    from impactlab.study.schema.files import read_study
-    from impactlab.study.stored import check_unclaimed, study_file
+    from impactlab.study.ownership import check_unclaimed, study_file
+    from impactlab.study.schema.readers import read_study
 
     declared = read_study(study)
     path = output or steps.results_folder(declared.name) / "design.nc"
@@ -128,7 +128,7 @@ def run(
     from impactlab.study.design import study_of_design
     from impactlab.study.engine import Engine, read_profile
     from impactlab.study.estimate import estimate
-    from impactlab.study.schema.files import read_study
+    from impactlab.study.schema.readers import read_study
 
     stored = read_netcdf(design_file, "design") if design_file.suffix == ".nc" else None
     study = read_study(design_file) if stored is None else study_of_design(stored, design_file)
@@ -195,7 +195,7 @@ def calibrate(
     from impactlab.study import steps
     from impactlab.study.calibration import calibrate as calibration
     from impactlab.study.engine import Engine
-    from impactlab.study.schema.files import read_study
+    from impactlab.study.schema.readers import read_study
 
     declared = read_study(study)
     folder = steps.results_folder(declared.name)
@@ -226,8 +226,8 @@ def verify(
     from impactlab.files import read_netcdf, write_netcdf
     from impactlab.report.console import print_outcomes
     from impactlab.study import steps
-    from impactlab.study.schema.files import read_verification
-    from impactlab.study.stored import check_unclaimed, study_file
+    from impactlab.study.ownership import check_unclaimed, study_file
+    from impactlab.study.schema.readers import read_verification
     from impactlab.verification.stored import unpacked
 
     if study.suffix == ".nc":
@@ -257,8 +257,8 @@ def go(
     from impactlab.cli import results
     from impactlab.methods.sobol import Sobol
     from impactlab.study import steps
-    from impactlab.study.schema.files import read_any
-    from impactlab.study.schema.study import Study, Verification
+    from impactlab.study.schema.declarations import ImpactStudy, Verification
+    from impactlab.study.schema.readers import read_any
 
     declared = read_any(study)
     failed = False
@@ -272,7 +272,7 @@ def go(
         folder = steps.results_folder(declared.name)
         stored = [folder / "runs.nc", folder / "analysis.nc"]
         run(study, workers=workers, force=force, replace=replace)
-        if isinstance(declared, Study) and isinstance(declared.sampling, Sobol):
+        if isinstance(declared, ImpactStudy) and isinstance(declared.sampling, Sobol):
             refine(stored[0], workers=workers)
         results.analyse(stored[0], **steps.evidence(declared, stored[0]))
     results.figures(stored)

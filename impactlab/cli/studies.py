@@ -48,12 +48,12 @@ def studies(
     if as_json:
         import json
 
-        from impactlab.study.schema.files import describe
+        from impactlab.study.schema.readers import describe
 
         print(json.dumps([describe(path) for path in files], indent=1))
         return
     from impactlab.report.console import print_studies
-    from impactlab.study.schema.files import read_any
+    from impactlab.study.schema.readers import read_any
 
     read = [read_any(path) for path in files]
     print_studies((study.name, study.size, study.title) for study in read)
@@ -66,7 +66,7 @@ def status(study: StudyFile, results: Results = RESULTS) -> None:
     """
     from impactlab.report.console import print_status
     from impactlab.study import steps
-    from impactlab.study.schema.files import read_study
+    from impactlab.study.schema.readers import read_study
 
     progress = steps.status(read_study(study), results / study.stem)
     if progress is None:

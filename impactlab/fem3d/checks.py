@@ -5,8 +5,8 @@ from __future__ import annotations
 from impactlab.fem3d.wing import MODEL, SIZES
 from impactlab.methods.grid import Grid
 from impactlab.solver import outputs
-from impactlab.study.schema.checks import Reasons, key_of, size_keys, values_of
-from impactlab.study.schema.study import StudyFile
+from impactlab.study.schema.consistency import Reasons, key_of, size_keys, values_of
+from impactlab.study.schema.declarations import StudyFile
 
 
 def reasons(file: StudyFile) -> Reasons:

@@ -81,7 +81,7 @@ def witness(
     """
     from impactlab.fem3d.deck import FLAVOURS
     from impactlab.fem3d.plan import case_of, planned, print_plan
-    from impactlab.study.schema.files import read_impacts
+    from impactlab.study.schema.readers import read_impacts
     from impactlab.study.steps import results_folder
 
     if deck and deck not in FLAVOURS:

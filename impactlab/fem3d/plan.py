@@ -19,7 +19,7 @@ from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import Value, flatten, with_values
 from impactlab.model.quantities import amount, time
 from impactlab.simulate import case_table, solve
-from impactlab.study.schema.study import Study
+from impactlab.study.schema.declarations import ImpactStudy
 
 MODELS = ("euler_bernoulli", "timoshenko", "spring_mass")  # in the order of tables and figures
 _COARSE = 101  # nodes that resolve the duration of a contact within some percent
@@ -43,7 +43,7 @@ class Case:
 
 
 def case_of(
-    study: Study | None, *, velocity: float | None = None, contact: str | None = None
+    study: ImpactStudy | None, *, velocity: float | None = None, contact: str | None = None
 ) -> Case:
     """Return the base of a study with its fixed values, or the paper's own case where it is None.
 

@@ -39,7 +39,7 @@ from impactlab.solver import BEAM_MODELS
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.solver.types import CASE
 from impactlab.study.netcdf import Array, Columns
-from impactlab.study.solvers import flattened, impact, run_shape
+from impactlab.study.solvers import flattened, kernels, run_shape
 from impactlab.study.store import OutputSpec
 from impactlab.variables import FAILURES, HISTORIES, RESPONSES, described
 
@@ -190,7 +190,7 @@ def cases(design: xr.Dataset, runs: Array) -> Array:
     """Return the table of these runs. Raises ValueError naming a run that the model refuses."""
     varied = {name: flattened(design, name, runs) for name in listed(design, "varied")}
     duration = design["duration"].item()
-    return table(*impact.base(design), duration=duration, varied=varied, first_run=int(runs[0]))
+    return table(*kernels.base(design), duration=duration, varied=varied, first_run=int(runs[0]))
 
 
 def solve(cases: Array, form: OutputSpec) -> Columns:
@@ -213,13 +213,13 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     """Return the answers of a design's runs, in its order, with labels and provenance."""
     dims, shape = run_shape(design)
     variables = {name: (dims, answers[name].reshape(shape)) for name in VARIABLES}
-    return described(impact.labelled(design, answers).assign(variables))
+    return described(kernels.labelled(design, answers).assign(variables))
 
 
 SOLVER = replace(
-    impact.SOLVER,
+    kernels.SOLVER,
     version=hashlib.sha256(f"{SOURCES_HASH} {COMPILER.sources_hash}".encode()).hexdigest(),
-    columns=lambda design: (*impact.columns(design), *VARIABLES),
+    columns=lambda design: (*kernels.columns(design), *VARIABLES),
     cases=cases,
     cost=work,
     solve=solve,

@@ -23,7 +23,7 @@ from impactlab.methods.hypercube import Hypercube
 from impactlab.methods.record import Family, Indices
 from impactlab.methods.runs import Sample
 from impactlab.methods.sampling import RandomSample, Sampling
-from impactlab.validation.section import name_at
+from impactlab.validation.fields import name_at
 
 for _module in iter_modules([str(Path(__file__).parent)]):
     import_module(f"{__name__}.{_module.name}")

@@ -27,7 +27,7 @@ from pydantic import (
 
 from impactlab.model.quantities import Quantity
 from impactlab.types import Floats
-from impactlab.validation.section import Number, at_key, quantity, requires
+from impactlab.validation.fields import Number, at_key, quantity, requires
 from impactlab.validation.stated import Stated
 from impactlab.validation.values import LABEL, value_type
 

@@ -24,7 +24,7 @@ from impactlab.methods.sampling import MOST_RUNS, RandomSample
 from impactlab.methods.sobol import FAMILY
 from impactlab.methods.verdict import of_orders
 from impactlab.types import Floats
-from impactlab.validation.section import Whole, at_key
+from impactlab.validation.fields import Whole, at_key
 
 _CURVES = 4
 """Curves of FAST per parameter: their differences tell the error of its indices."""

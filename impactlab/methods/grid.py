@@ -12,15 +12,15 @@ from pydantic import Field, TypeAdapter, ValidationInfo, model_validator
 
 from impactlab.methods.sampling import Sampling
 from impactlab.model.parameters import Parameter, Value
+from impactlab.validation.fields import FileSection, Whole, at_key, one_of
 from impactlab.validation.refusals import check_alone
-from impactlab.validation.section import Section, Whole, at_key, one_of
 from impactlab.validation.values import value_type
 
 Q = TypeVar("Q", bound=float)
 MOST_VALUES = 10_000
 
 
-class Range(Section, Generic[Q]):
+class Range(FileSection, Generic[Q]):
     """`number` values from start to stop, both included, evenly spaced or in geometric sequence.
 
     Raises ValueError unless start < stop, and 0 < start where spacing is "log".

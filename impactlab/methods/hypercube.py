@@ -18,7 +18,7 @@ from pydantic import Field, PlainValidator, StrictStr, TypeAdapter, model_valida
 from impactlab.methods.sampling import MOST_RUNS, RandomSample
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown
-from impactlab.validation.section import Number, Whole, at_key
+from impactlab.validation.fields import Number, Whole, at_key
 
 Correlations = Sequence[tuple[str, str, float]]
 """Two parameters and Spearman's rank correlation of them; pairs that are not listed have 0."""

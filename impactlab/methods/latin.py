@@ -10,7 +10,7 @@ from pydantic import PlainValidator, ValidationInfo
 
 from impactlab.methods.hypercube import Hypercube
 from impactlab.methods.record import Indices
-from impactlab.validation.section import names
+from impactlab.validation.fields import names
 
 
 def _choices() -> dict[str, Indices]:

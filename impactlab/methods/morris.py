@@ -15,7 +15,7 @@ from impactlab.methods.runs import Sample
 from impactlab.methods.sampling import Grouped
 from impactlab.methods.verdict import SensitivityVerdict, wide
 from impactlab.types import Floats
-from impactlab.validation.section import Whole, at_key, requires
+from impactlab.validation.fields import Whole, at_key, requires
 
 _EVEN = "must be even: the steps would favour some levels otherwise"
 SAME = 1e-13  # difference, relative to the largest value, up to which two values are one level

@@ -31,7 +31,7 @@ from impactlab.methods.saltelli import REPLICATES, Outputs, estimates, saltelli,
 from impactlab.methods.sampling import MOST_RUNS, Grouped
 from impactlab.methods.verdict import SensitivityVerdict, of_orders, still
 from impactlab.types import Floats
-from impactlab.validation.section import Names, Number, Section, Whole, at_key
+from impactlab.validation.fields import FileSection, Names, Number, Whole, at_key
 from impactlab.verdicts import ROUND_OFF
 
 _FEWEST_TO_GROW = 64
@@ -148,7 +148,7 @@ def _judge(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
 INDICES = Indices("sobol", _VARIABLES, FAMILY, check, _estimate, _judge, varying)
 
 
-class Until(Section):
+class Until(FileSection):
     """The key `until`: the sample is doubled until its intervals are narrow enough.
 
     interval: largest half-width of the interval of a first or total-order index. runs: largest

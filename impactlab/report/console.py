@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from impactlab.study.estimate import Estimate
-    from impactlab.study.runs import Status
+    from impactlab.study.inventory import Status
     from impactlab.verification.finding import Outcome
 
 _AXES = ("nodes", "points", "courant")

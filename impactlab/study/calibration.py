@@ -24,8 +24,9 @@ from impactlab.solver.contact import LAWS
 from impactlab.study import CALIBRATION, steps
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.schema.files import of_impacts, study_of_content
-from impactlab.study.schema.measurements import Given, read_measurements
+from impactlab.study.schema.declarations import AnyStudy
+from impactlab.study.schema.measurement_files import Given, read_measurements
+from impactlab.study.schema.readers import of_impacts, study_of_content
 from impactlab.study.schema.yaml_file import read_mapping
 from impactlab.validation.errors import Problem, StudyError, unknown
 
@@ -38,7 +39,7 @@ OFF = 2.0
 
 
 def calibrate(
-    study: steps.AnyStudy,
+    study: AnyStudy,
     folder: Path,
     given: Given,
     engine: Engine,
@@ -96,8 +97,8 @@ def calibrate(
 
 
 def _models(
-    study: steps.AnyStudy, folder: Path, laws: Sequence[str]
-) -> Iterator[tuple[str, steps.AnyStudy, Path]]:
+    study: AnyStudy, folder: Path, laws: Sequence[str]
+) -> Iterator[tuple[str, AnyStudy, Path]]:
     """Yield name, study and folder of each model: of each law listed, or else in the sample."""
     choice = _drawn(study)
     laws = laws or tuple(choice)
@@ -121,7 +122,7 @@ def _models(
         yield law, replace(under, path=Path(f"{study.name}_{law}.yaml")), folder / CALIBRATION / law
 
 
-def _drawn(study: steps.AnyStudy) -> dict[str, float]:
+def _drawn(study: AnyStudy) -> dict[str, float]:
     """Return the contact laws that a sample draws, with their probabilities; else {}."""
     parameter = study.sampling.parameters.get("contact")
     arguments = (
@@ -130,7 +131,7 @@ def _drawn(study: steps.AnyStudy) -> dict[str, float]:
     return dict(zip(arguments["values"], arguments["weights"], strict=True))
 
 
-def _solved(study: steps.AnyStudy, folder: Path, engine: Engine) -> xr.Dataset:
+def _solved(study: AnyStudy, folder: Path, engine: Engine) -> xr.Dataset:
     path = folder / "runs.nc"
     runs = read_netcdf(path, "runs") if path.exists() else None
     if runs is None or runs.attrs.get("study_sha256") != study.sha256:

@@ -16,16 +16,16 @@ from impactlab.methods.grid import Grid
 from impactlab.methods.runs import listed
 from impactlab.methods.sobol import Sobol
 from impactlab.model.parameters import flatten, with_values
-from impactlab.study.schema.checks import further_models
-from impactlab.study.schema.files import study_of_text
-from impactlab.study.schema.study import FunctionStudy, Study
+from impactlab.study.schema.consistency import further_models
+from impactlab.study.schema.declarations import AnyStudy, FunctionStudy, ImpactStudy
+from impactlab.study.schema.readers import study_of_text
 from impactlab.study.solvers import run_shape
 from impactlab.validation.errors import Problem, StudyError
 from impactlab.variables import described
 from impactlab.verification.functions import FUNCTIONS
 
 
-def design(study: Study | FunctionStudy) -> xr.Dataset:
+def design(study: AnyStudy) -> xr.Dataset:
     """Return the runs of a study, as a Dataset of coordinates alone.
 
     A grid has one dimension per varied parameter; a sample has the dimension `run` with the varied
@@ -68,7 +68,7 @@ def design(study: Study | FunctionStudy) -> xr.Dataset:
             varied[name] = "run", values, sampling.varied[name].arguments()
     scalars = {name: ((), value) for name, value in fixed.items()}
     runs = xr.Dataset(coords=scalars | varied, attrs=study.attributes() | settings)
-    if isinstance(study, Study):
+    if isinstance(study, ImpactStudy):
         return described(runs)
     for name, attrs in study.labels.items():
         runs[name].attrs = {**attrs, **runs[name].attrs}
@@ -107,7 +107,7 @@ def stages(design: xr.Dataset) -> Iterator[xr.Dataset]:
         yield design
 
 
-def study_of_design(design: xr.Dataset, file: Path) -> Study | FunctionStudy:
+def study_of_design(design: xr.Dataset, file: Path) -> AnyStudy:
     """Return the study whose text a design holds, with the discretisation found for it.
 
     file: the path named in errors. Raises ValueError where the dataset is not a design, or its

@@ -20,7 +20,7 @@ from tornado.ioloop import PeriodicCallback
 from tornado.util import TimeoutError as TornadoTimeoutError
 
 from impactlab.study.schema.yaml_file import read_mapping, read_text
-from impactlab.validation.section import Section, validated
+from impactlab.validation.fields import FileSection, validated
 
 if TYPE_CHECKING:
     from dask_jobqueue.slurm import SLURMCluster
@@ -133,7 +133,7 @@ def _here(workers: int, *, processes: bool) -> Iterator[Client]:
         yield client
 
 
-class Profile(Section):
+class Profile(FileSection):
     """A Slurm job: keys of dask_jobqueue.SLURMCluster, and the number of jobs."""
 
     jobs: Annotated[int, Field(ge=1)]

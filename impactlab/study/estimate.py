@@ -22,10 +22,10 @@ from impactlab.model.parameters import PARAMETERS, Value, with_values
 from impactlab.model.plausibility import implausibilities
 from impactlab.model.quantities import amount, time
 from impactlab.simulate import case_table
+from impactlab.study.inventory import BOUND_IT, file_stats
 from impactlab.study.netcdf import Array
-from impactlab.study.runs import BOUND_IT, file_stats
-from impactlab.study.schema.checks import extremes, further_models, key_of
-from impactlab.study.schema.study import FunctionStudy, Study
+from impactlab.study.schema.consistency import extremes, further_models, key_of
+from impactlab.study.schema.declarations import AnyStudy, FunctionStudy, ImpactStudy
 from impactlab.validation.errors import Problem, StudyError
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 
@@ -124,7 +124,7 @@ class Estimate:
         return [Problem(self.file, key, f"{reason}; {way_out}") for key, reason in exceeded]
 
 
-def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estimate:
+def estimate(study: AnyStudy, folder: Path, workers: int) -> Estimate:
     """Return the cost of a study on so many workers of this machine, within a factor of about 3.
 
     study: with its discretisation, where that is known (see steps.resolved). folder: for its
@@ -179,11 +179,11 @@ def estimate(study: Study | FunctionStudy, folder: Path, workers: int) -> Estima
         slow=slow,
         large=large,
         implausible=tuple(doubted),
-        auto=isinstance(study, Study) and study.auto is not None,
+        auto=isinstance(study, ImpactStudy) and study.auto is not None,
     )
 
 
-def _drivers(study: Study, model: Any, case: Array, runs: int) -> list[str]:
+def _drivers(study: ImpactStudy, model: Any, case: Array, runs: int) -> list[str]:
     """Return the keys that drive time and space: the usual values of which would save most."""
     usual = model.usual(case, _USUAL_DURATION)
     slow = {"sampling": runs / _USUAL_RUNS}
@@ -205,7 +205,7 @@ def _usual(case: Array, duration: float) -> Array:
     return case_table(paper_impact(), Discretisation(), duration=duration, varied={})
 
 
-def _cost_sample(study: Study) -> dict[str, Array]:
+def _cost_sample(study: ImpactStudy) -> dict[str, Array]:
     """Return varied parameters of some runs: all of a small grid, else _MOST, without a sampler."""
     sampling, random = study.sampling, np.random.default_rng(0)
     if isinstance(sampling, RandomSample):
@@ -221,7 +221,7 @@ def _cost_sample(study: Study) -> dict[str, Array]:
     return {name: random.choice(listed, _MOST) for name, listed in values.items()}
 
 
-def _cases(study: Study, model: Any, columns: Mapping[str, Sequence[Value] | Array]) -> Array:
+def _cases(study: ImpactStudy, model: Any, columns: Mapping[str, Sequence[Value] | Array]) -> Array:
     base = with_values(study.impact, study.discretisation, study.sampling.fixed)
     try:
         return np.asarray(model.table(*base, duration=study.duration, varied=columns))
@@ -231,7 +231,7 @@ def _cases(study: Study, model: Any, columns: Mapping[str, Sequence[Value] | Arr
 
 
 def _largest_run(
-    study: Study, model: Any, sample: Mapping[str, Array], cost: Array
+    study: ImpactStudy, model: Any, sample: Mapping[str, Array], cost: Array
 ) -> dict[str, Value]:
     """Return the largest run: that of the sample, each parameter taken to its costliest end."""
     sampling = study.sampling

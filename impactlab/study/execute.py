@@ -19,9 +19,9 @@ from distributed import Client, Future, KilledWorker, as_completed
 from distributed.comm.core import CommClosedError
 
 from impactlab.study.engine import Engine
+from impactlab.study.inventory import Work, open_answers
 from impactlab.study.netcdf import Array, Columns
 from impactlab.study.progress import items_done
-from impactlab.study.runs import Work, open_answers
 from impactlab.study.solvers import solver_named
 from impactlab.study.store import OutputSpec, RunIndex, Shards, joined, locked
 

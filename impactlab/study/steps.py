@@ -27,19 +27,24 @@ from impactlab.files import (
     write_netcdf,
 )
 from impactlab.study import CALIBRATION, REFINEMENT, RESOLUTION, SHARDS, TRIALS
-from impactlab.study.schema.study import Auto, FunctionStudy, Study, Verification
+from impactlab.study.ownership import check_unclaimed, same_runs, study_file, write_runs
+from impactlab.study.schema.declarations import (
+    AnyStudy,
+    Auto,
+    FunctionStudy,
+    ImpactStudy,
+    Verification,
+)
 from impactlab.study.schema.yaml_file import check_name
-from impactlab.study.stored import check_unclaimed, same_runs, study_file, write_runs
 from impactlab.validation.errors import StudyError
 
 if TYPE_CHECKING:
     from impactlab.study.engine import Engine
-    from impactlab.study.runs import Status
+    from impactlab.study.inventory import Status
     from impactlab.verification.finding import Outcome
 
 log = logging.getLogger(__name__)
 
-AnyStudy = Study | FunctionStudy
 Tell = Callable[[xr.Dataset], object]
 
 
@@ -56,7 +61,9 @@ def results_folder(study: str, results: Path = Path("results")) -> Path:
     return folder
 
 
-def recommend(study: Study, path: Path, engine: Engine, wishes: Auto | None = None) -> xr.Dataset:
+def recommend(
+    study: ImpactStudy, path: Path, engine: Engine, wishes: Auto | None = None
+) -> xr.Dataset:
     """Write to `path` (resolution.nc), and return, the dataset of recommendation.recommend."""
     from impactlab.study.adaptive import recommendation
 
@@ -117,14 +124,14 @@ def run(
     """
     from impactlab.study.design import design
     from impactlab.study.estimate import estimate
-    from impactlab.study.schema.measurements import read_measurements
+    from impactlab.study.schema.measurement_files import read_measurements
 
     source = study_file(study, path.parent)
     if runs is not None and (file := runs.attrs.get("study_file")):
         source = study_file(changed(study, path=study.path.parent / file), path.parent)
     if not replace:
         check_unclaimed(study, path, source)
-    for file in study.measurements if isinstance(study, Study) else ():
+    for file in study.measurements if isinstance(study, ImpactStudy) else ():
         read_measurements(file)  # mistakes there are told before hours of runs
     declared = resolved(study, path.parent, tell=tell)
     cost = estimate(declared or study, path.parent, engine.workers)
@@ -151,7 +158,7 @@ def solve(samples: xr.Dataset, path: Path, engine: Engine) -> None:
     shards = path.with_name(SHARDS)
     if "until_interval" in samples.attrs:
         from impactlab.analysis.analyse import analyse
-        from impactlab.study.adaptive.sobol import extend_sample
+        from impactlab.study.adaptive.extension import extend_sample
 
         with locked(shards), ExitStack() as last:  # locked over all its stages
 
@@ -172,7 +179,7 @@ def status(study: AnyStudy, folder: Path) -> Status | None:
     still to be found.
     """
     from impactlab.study.design import design, stages
-    from impactlab.study.runs import status as status_of
+    from impactlab.study.inventory import status as status_of
     from impactlab.study.solvers import run_shape
 
     declared, runs = resolved(study, folder), folder / "runs.nc"
@@ -220,8 +227,8 @@ def removable(studies: Path, results: Path) -> Iterator[dict[Path, str]]:
 def _stale(file: Path, shards: Path, home: Path) -> dict[Path, str]:
     """Return a study's files to remove: none where it has no file; home: its folder of results."""
     from impactlab.study.design import design, stages
-    from impactlab.study.runs import removable_files
-    from impactlab.study.schema.files import read_study
+    from impactlab.study.inventory import removable_files
+    from impactlab.study.schema.readers import read_study
 
     if not file.is_file():
         return {}
@@ -238,7 +245,7 @@ def _stale(file: Path, shards: Path, home: Path) -> dict[Path, str]:
 
 def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = None) -> None:
     """Solve the first runs of a Sobol sample on finer grids and write them to `path`."""
-    from impactlab.study.adaptive.sobol import refine_cases
+    from impactlab.study.adaptive.extension import refine_cases
     from impactlab.study.execute import execute
 
     part = partial(execute, shards_folder=runs.with_name(REFINEMENT), engine=engine)
@@ -253,7 +260,7 @@ def evidence(study: AnyStudy, runs: Path) -> dict[str, Path]:
     """
     evidence = {}
     resolution, refinement = runs.with_name(RESOLUTION), runs.with_name(f"{REFINEMENT}.nc")
-    if isinstance(study, Study) and study.auto:
+    if isinstance(study, ImpactStudy) and study.auto:
         evidence = {"resolution": resolution} if resolution.exists() else {}
     if refinement.exists():
         with opened(refinement, "refinement") as refined, opened(runs, "runs") as solved:
@@ -278,7 +285,7 @@ def analyse_runs(
     from impactlab.analysis.sensitivity.indices import sensitivity_variables, write_csv
     from impactlab.analysis.surrogate import packed
     from impactlab.methods.runs import listed
-    from impactlab.study.schema.measurements import read_measurements
+    from impactlab.study.schema.measurement_files import read_measurements
 
     given = {"resolution": resolution, "refinement": refinement}
     evidence = {name: read_netcdf(file, name) for name, file in given.items() if file}

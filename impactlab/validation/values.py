@@ -9,8 +9,8 @@ from typing import Annotated, Any
 from pydantic import AfterValidator
 
 from impactlab.model.parameters import Parameter
+from impactlab.validation.fields import Whole, one_of, quantity
 from impactlab.validation.refusals import check_alone
-from impactlab.validation.section import Whole, one_of, quantity
 
 LABEL = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")
 """Names of a study's own; no formulas in tables, and no labels that a legend leaves out."""

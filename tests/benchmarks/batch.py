@@ -27,7 +27,7 @@ from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.leapfrog import kernel_of
 from impactlab.solver.outputs import blank
 from impactlab.study.execute import solve_batch
-from impactlab.study.solvers import impact
+from impactlab.study.solvers import kernels as impacts
 from impactlab.study.store import OutputSpec, run_keys
 
 RUNS = 1000
@@ -75,10 +75,10 @@ def study(duration: float, threads: int) -> Callable[[], object]:
 
     def solved() -> object:
         cases = case_table(IMPACT, GRID, duration=duration, varied=VARIED)
-        run_keys(cases, OUTPUT, impact.SOLVER.version)
+        run_keys(cases, OUTPUT, impacts.SOLVER.version)
         with ThreadPoolExecutor(threads) as pool:
             under_way = [
-                pool.submit(solve_batch, "impact", part, OUTPUT, impact.SOLVER.version)
+                pool.submit(solve_batch, "impact", part, OUTPUT, impacts.SOLVER.version)
                 for part in np.array_split(cases, TASKS)
             ]
             return [task.result() for task in under_way]

@@ -39,7 +39,7 @@ from impactlab.model.parameters import flatten
 from impactlab.study.engine import Engine
 from impactlab.study.execute import open_runs
 from impactlab.study.netcdf import Columns
-from impactlab.study.solvers import impact
+from impactlab.study.solvers import kernels as impacts
 from impactlab.study.store import OutputSpec
 from impactlab.variables import RESPONSES, described
 
@@ -153,19 +153,19 @@ def kernels() -> Iterator[list[float]]:
         spent.append(time.thread_time() - start)
         return columns
 
-    whole, impact.SOLVER = impact.SOLVER, replace(impact.SOLVER, solve=timed)
+    whole, impacts.SOLVER = impacts.SOLVER, replace(impacts.SOLVER, solve=timed)
     try:
         yield spent
     finally:
-        impact.SOLVER = whole
+        impacts.SOLVER = whole
 
 
 def measured(what: str, runs: int, threads: int) -> dict[str, object]:
     """One line of the table, in this process."""
     asked = design(runs, *KINDS[what])
     line = {"what": what, "runs": runs, "threads": threads}
-    impact.SOLVER.solve(
-        impact.cases(asked, np.arange(1)), OutputSpec.of(asked)
+    impacts.SOLVER.solve(
+        impacts.cases(asked, np.arange(1)), OutputSpec.of(asked)
     )  # compiled, or loaded
     with tempfile.TemporaryDirectory() as folder, kernels() as spent:
         wall, processor = time.perf_counter(), time.process_time()

@@ -24,7 +24,7 @@ from impactlab.methods.distributions import ENTRIES, Entry, Fixed
 from impactlab.methods.sampling import Sampling
 from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.study import steps
-from impactlab.study.schema.files import read_study
+from impactlab.study.schema.readers import read_study
 from impactlab.study.schema.written import content_of
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")

@@ -18,7 +18,7 @@ from impactlab.validation.stated import Stated
 RETURNED = {
     "Estimate": "impactlab.study.estimate",
     "Problem": "impactlab.validation.errors",
-    "Status": "impactlab.study.runs",
+    "Status": "impactlab.study.inventory",
     "Surrogate": "impactlab.analysis.surrogate.stored",
 }
 """Classes that public functions return, and their modules."""

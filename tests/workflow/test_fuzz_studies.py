@@ -14,8 +14,8 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from impactlab.study.design import design
 from impactlab.study.estimate import estimate
-from impactlab.study.schema.files import read_any
-from impactlab.study.schema.study import FunctionStudy, Verification
+from impactlab.study.schema.declarations import FunctionStudy, Verification
+from impactlab.study.schema.readers import read_any
 from impactlab.study.schema.yaml_file import LARGEST
 from impactlab.validation.errors import StudyError
 

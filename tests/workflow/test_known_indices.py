@@ -16,7 +16,7 @@ from impactlab.report.study import write_report
 from impactlab.study.design import design
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.schema.files import read_study
+from impactlab.study.schema.readers import read_study
 from impactlab.variables import FAILURES
 
 ROOT = Path(__file__).parents[2]
@@ -197,7 +197,7 @@ def test_the_committed_study_states_what_is_known():
 
 
 def test_the_command_recommend_refuses_a_function():
-    from impactlab.study.schema.files import read_impacts
+    from impactlab.study.schema.readers import read_impacts
     from impactlab.validation.errors import StudyError
 
     with pytest.raises(StudyError, match="has no discretisation"):

@@ -13,7 +13,7 @@ from impactlab.files import write_netcdf
 from impactlab.model.quantities import si
 from impactlab.report.answer import answers
 from impactlab.study import steps
-from impactlab.study.adaptive import recommendation, sobol
+from impactlab.study.adaptive import extension, recommendation
 from impactlab.study.engine import Engine
 from impactlab.study.store import holder
 
@@ -124,7 +124,7 @@ def test_nobody_gets_between_two_steps_of_a_growing_sample(folder, monkeypatch):
         seen.append(holder(folder / "results" / "growing" / "shards"))
         raise OSError("seen enough")
 
-    monkeypatch.setattr(sobol, "extend_sample", looking)
+    monkeypatch.setattr(extension, "extend_sample", looking)
     assert here("run", "studies/growing.yaml") == 1
     assert seen[0].startswith(f"process {os.getpid()} on ")
 

@@ -38,7 +38,7 @@ from impactlab.simulate import case_table
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.schema.study import Auto, Study
+from impactlab.study.schema.declarations import Auto, ImpactStudy
 from impactlab.study.store import locked
 from impactlab.types import Floats
 from impactlab.validation.errors import Problem, StudyError
@@ -66,7 +66,9 @@ _POINT_COST = 0.05
 measured on the paper's beam at 15 and 20 m/s (tests/benchmarks/kernel.py)."""
 
 
-def recommend(study: Study, folder: Path, engine: Engine, wishes: Auto | None = None) -> xr.Dataset:
+def recommend(
+    study: ImpactStudy, folder: Path, engine: Engine, wishes: Auto | None = None
+) -> xr.Dataset:
     """Return the recommended discretisation and its evidence, from pilot runs on corner cases.
 
     folder: for the shards of the pilot runs. wishes: tolerance, and the responses that have to meet
@@ -127,7 +129,7 @@ def relative(amount: xr.DataArray, value: xr.DataArray) -> xr.DataArray:
 
 
 def _evidence(
-    study: Study, pilots: Pilots, tolerance: float, responses: Collection[str]
+    study: ImpactStudy, pilots: Pilots, tolerance: float, responses: Collection[str]
 ) -> xr.Dataset:
     grid = study.discretisation
     levels = _refinement_levels(grid, study.auto is not None)
@@ -203,7 +205,9 @@ def _axis(
     return {f"{axis}_value": values, f"{axis}_uncertainty": amounts.where(~without_limit, np.inf)}
 
 
-def _grid_options(evidence: xr.Dataset, study: Study, tolerance: float) -> dict[str, xr.DataArray]:
+def _grid_options(
+    evidence: xr.Dataset, study: ImpactStudy, tolerance: float
+) -> dict[str, xr.DataArray]:
     """Return all combinations of the levels of `evidence`, the cheapest first.
 
     Variables on (candidate): candidate_nodes, candidate_points, candidate_courant and
@@ -235,7 +239,7 @@ def _worst(evidence: xr.Dataset, axis: str) -> xr.DataArray:
     return relative(evidence[f"{axis}_uncertainty"], reference).max("case")
 
 
-def apply_recommendation(study: Study, evidence: xr.Dataset) -> Study:
+def apply_recommendation(study: ImpactStudy, evidence: xr.Dataset) -> ImpactStudy:
     """Return a study that is `auto` with its recommended discretisation (see `recommend`).
 
     Raises StudyError where no discretisation meets the tolerance for a requested response, naming
@@ -261,7 +265,7 @@ def apply_recommendation(study: Study, evidence: xr.Dataset) -> Study:
 
 
 def solve_along(
-    study: Study,
+    study: ImpactStudy,
     cases: Mapping[str, Sequence[Value]],
     folder: Path,
     engine: Engine,
@@ -294,7 +298,7 @@ def solve_along(
     )
 
 
-def corner_cases(study: Study) -> dict[str, list[Value]]:
+def corner_cases(study: ImpactStudy) -> dict[str, list[Value]]:
     """Return one value per parameter and case: numbers at extremes and middle, and all words.
 
     A grid's words come in all combinations. Those that a sample draws take turns: every word meets

@@ -79,7 +79,7 @@ class Solver:
 
 
 SOLVERS = {
-    "impact": "impactlab.study.solvers.impact:SOLVER",
+    "impact": "impactlab.study.solvers.kernels:SOLVER",
     "function": "impactlab.study.solvers.function:SOLVER",
 } | {model.solver: model.references["solver"] for model in wings.models().values()}
 """References to solvers, by the name that designs hold in their attribute `solver`."""

@@ -23,10 +23,10 @@ from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.simulate import run_dataset
 from impactlab.study.netcdf import Array, Columns
-from impactlab.study.schema.study import FunctionStudy, Study
+from impactlab.study.schema.declarations import AnyStudy, FunctionStudy
 from impactlab.study.solvers import Solver, flattened, on_design
 from impactlab.study.solvers.fingerprint import fingerprint
-from impactlab.study.solvers.impact import SOLVER as IMPACT
+from impactlab.study.solvers.kernels import SOLVER as IMPACT
 from impactlab.study.store import OutputSpec
 from impactlab.variables import FLAGS, HISTORIES, PROFILES, RESPONSES
 
@@ -140,7 +140,7 @@ def register(name: str, function: Function | Callable[..., Any]) -> str:
     return f"{name}@{digest}"
 
 
-def solver_name(study: Study | FunctionStudy) -> str:
+def solver_name(study: AnyStudy) -> str:
     """Return the name of the solver of a study with functions of the user; it is known from now.
 
     Raises ValueError where a function, or what it uses, has changed since the study was built.

@@ -17,7 +17,7 @@ from impactlab.figures.catalogue import applicable
 from impactlab.figures.data import drawn
 from impactlab.report.answer import LINES, answers
 from impactlab.report.measured import entries, sections
-from impactlab.study.schema.measurements import read_measurements
+from impactlab.study.schema.measurement_files import read_measurements
 from impactlab.validation.errors import StudyError
 
 ROOT = Path(__file__).parents[3]

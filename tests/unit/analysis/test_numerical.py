@@ -5,9 +5,9 @@ import pytest
 import xarray as xr
 
 from impactlab.analysis.numerical import measured, numerical
-from impactlab.study.adaptive.sobol import refine_cases
+from impactlab.study.adaptive.extension import refine_cases
 from impactlab.study.design import design
-from impactlab.study.schema.files import study_of_text
+from impactlab.study.schema.readers import study_of_text
 
 RUNS = 4096
 ATTRS = {"study": "some", "study_sha256": "f", "responses": ["y"]}

@@ -11,7 +11,7 @@ from impactlab.fem3d import plan as plans
 from impactlab.fem3d.plan import USUAL_TIME, case_of, planned
 from impactlab.fem3d.solver import estimate, least_cost, quarter_mesh
 from impactlab.fem3d.solver.estimates import contact_radius
-from impactlab.study.schema.files import read_impacts
+from impactlab.study.schema.readers import read_impacts
 from impactlab.validation.errors import StudyError
 
 STUDIES = Path(__file__).parents[3] / "studies"

@@ -18,8 +18,8 @@ from impactlab.study.design import design
 from impactlab.study.engine import Engine
 from impactlab.study.estimate import estimate
 from impactlab.study.execute import execute
-from impactlab.study.runs import Work
-from impactlab.study.schema.files import study_of_text
+from impactlab.study.inventory import Work
+from impactlab.study.schema.readers import study_of_text
 from impactlab.study.store import OutputSpec
 from impactlab.variables import STATUS_FLAGS
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from impactlab.study.design import design
-from impactlab.study.schema.files import study_of_text
+from impactlab.study.schema.readers import study_of_text
 
 BOX = {"velocity": (1.0, 2.0), "beam_depth": (0.02, 0.03), "gravity": (0.0, 10.0)}
 UNIFORM = {

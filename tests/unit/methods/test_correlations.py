@@ -13,7 +13,7 @@ import impactlab as il
 from impactlab.methods import METHODS
 from impactlab.methods.hypercube import Hypercube, contradicting
 from impactlab.methods.runs import correlations
-from impactlab.study.schema.files import study_of_text
+from impactlab.study.schema.readers import study_of_text
 from impactlab.validation.errors import StudyError
 
 NUMBERS = {

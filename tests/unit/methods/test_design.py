@@ -15,8 +15,8 @@ from impactlab.study.design import doubled
 from impactlab.study.engine import Engine
 from impactlab.study.estimate import estimate
 from impactlab.study.execute import execute
-from impactlab.study.runs import Work
-from impactlab.study.schema.files import study_of_text
+from impactlab.study.inventory import Work
+from impactlab.study.schema.readers import study_of_text
 from impactlab.validation.errors import StudyError
 from impactlab.variables import RESPONSES
 

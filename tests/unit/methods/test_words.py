@@ -12,7 +12,7 @@ import pytest
 import impactlab as il
 from impactlab.study.adaptive.recommendation import corner_cases
 from impactlab.study.estimate import estimate
-from impactlab.study.schema.files import study_of_text
+from impactlab.study.schema.readers import study_of_text
 from impactlab.validation.errors import StudyError
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")

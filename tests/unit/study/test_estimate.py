@@ -18,7 +18,7 @@ from impactlab.study.estimate import (
     Estimate,
     estimate,
 )
-from impactlab.study.schema.files import study_of_text
+from impactlab.study.schema.readers import study_of_text
 from impactlab.study.solvers import solver_named
 
 NOWHERE = Path("no") / "results"

@@ -19,7 +19,7 @@ from impactlab.solver.stability import discretise
 from impactlab.study import execute as executing
 from impactlab.study.engine import Engine
 from impactlab.study.execute import Batches, execute, solve_batch
-from impactlab.study.solvers import impact
+from impactlab.study.solvers import kernels
 from impactlab.study.store import OutputSpec, Shards
 from impactlab.variables import RESPONSES
 
@@ -76,7 +76,7 @@ def test_runs_carry_the_labels_of_the_design(tmp_path):
 def test_workers_that_come_later_need_not_wait_for_a_task_to_end(tmp_path, monkeypatch):
     monkeypatch.setattr(executing, "_RUNS", 1)  # one run per task
     monkeypatch.setattr(executing, "_LOOK_AGAIN", 0.05)
-    solve, all_at_once = impact.SOLVER.solve, Barrier(6)
+    solve, all_at_once = kernels.SOLVER.solve, Barrier(6)
 
     def together(cases, output):
         if cases.size:
@@ -84,7 +84,7 @@ def test_workers_that_come_later_need_not_wait_for_a_task_to_end(tmp_path, monke
             all_at_once.wait(timeout=60)  # or BrokenBarrierError
         return solve(cases, output)
 
-    monkeypatch.setattr(impact, "SOLVER", replace(impact.SOLVER, solve=together))
+    monkeypatch.setattr(kernels, "SOLVER", replace(kernels.SOLVER, solve=together))
     one = {
         "n_workers": 1,
         "threads_per_worker": 1,
@@ -174,7 +174,7 @@ def test_the_estimated_cost_is_that_of_the_kernels_steps(scheme, nodes):
 
 
 def test_workers_with_other_kernels_are_refused():
-    cases = impact.cases(design(), np.arange(2))
+    cases = kernels.cases(design(), np.arange(2))
     with pytest.raises(RuntimeError, match="another version"):
         solve_batch("impact", cases, OutputSpec(0, False), "other")
 

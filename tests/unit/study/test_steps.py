@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from impactlab.solver.jit import SOURCES_HASH
-from impactlab.study.schema.study import Verification
+from impactlab.study.schema.declarations import Verification
 from impactlab.study.steps import check, failure, removable
 from impactlab.verification.catalogue import CATALOGUE
 from impactlab.verification.comparisons import Comparisons

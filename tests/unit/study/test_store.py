@@ -13,9 +13,9 @@ import xarray as xr
 import impactlab as il
 from impactlab.simulate import case_table
 from impactlab.study import store
+from impactlab.study.inventory import removable_files
 from impactlab.study.netcdf import KEY, Shard
-from impactlab.study.runs import removable_files
-from impactlab.study.solvers import impact
+from impactlab.study.solvers import kernels
 from impactlab.study.store import (
     OutputSpec,
     RunIndex,
@@ -27,7 +27,7 @@ from impactlab.study.store import (
 )
 
 OUTPUT = OutputSpec(samples=11, profiles=True)
-VERSION = impact.SOLVER.version
+VERSION = kernels.SOLVER.version
 
 
 def cases(*velocities, nodes=11):
@@ -41,7 +41,7 @@ def shards(tmp_path):
 
 
 def written(shards, table):
-    columns = impact.SOLVER.solve(table, OUTPUT)
+    columns = kernels.SOLVER.solve(table, OUTPUT)
     keys = run_keys(table, OUTPUT, VERSION)
     return keys, columns, shards.write(keys, columns)
 

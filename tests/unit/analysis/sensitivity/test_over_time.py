@@ -23,7 +23,7 @@ from impactlab.figures.labels import display
 from impactlab.files import checked, opened, write_netcdf
 from impactlab.methods.runs import Sample
 from impactlab.methods.saltelli import saltelli
-from impactlab.study.runs import open_answers
+from impactlab.study.inventory import open_answers
 from impactlab.study.store import OutputSpec, RunIndex, Shards
 from impactlab.variables import STATUS_FLAGS
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impactlab.study.adaptive.recommendation import corner_cases, corners
-from impactlab.study.schema.files import read_study
+from impactlab.study.schema.readers import read_study
 
 STUDY = """
 title: Corners

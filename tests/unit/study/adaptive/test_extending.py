@@ -8,9 +8,9 @@ import pytest
 import xarray as xr
 
 from impactlab.analysis.analyse import analyse
-from impactlab.study.adaptive.sobol import extend_sample, largest_interval
+from impactlab.study.adaptive.extension import extend_sample, largest_interval
 from impactlab.study.design import design
-from impactlab.study.schema.files import study_of_text
+from impactlab.study.schema.readers import study_of_text
 
 RESPONSES = ["peak_force", "contact_duration", "number_of_contacts"]
 

@@ -18,7 +18,7 @@ from impactlab.study.adaptive.recommendation import (
 )
 from impactlab.study.design import design
 from impactlab.study.engine import Engine
-from impactlab.study.schema.files import read_study
+from impactlab.study.schema.readers import read_study
 from impactlab.study.steps import resolved as resolved_study
 from impactlab.study.store import holder
 from impactlab.validation.errors import StudyError

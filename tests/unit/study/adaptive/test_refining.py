@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from impactlab.analysis.analyse import analyse
-from impactlab.study.adaptive.sobol import base_samples, refine_cases
+from impactlab.study.adaptive.extension import base_samples, refine_cases
 from impactlab.study.design import design
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.schema.files import study_of_text
+from impactlab.study.schema.readers import study_of_text
 
 STUDY = """
 title: Elastic impacts on a coarse grid

@@ -7,7 +7,7 @@ import json
 import pytest
 from ruamel.yaml import YAML
 
-from impactlab.study.schema.files import read_study
+from impactlab.study.schema.readers import read_study
 from impactlab.validation.errors import StudyError
 
 GRID = """

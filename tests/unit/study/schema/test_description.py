@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from impactlab.study.schema.files import describe
+from impactlab.study.schema.readers import describe
 
 GRID = """
 title: Small  # no auto here, nor until: or solid

@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from impactlab.study.schema.files import read_study
+from impactlab.study.schema.readers import read_study
 from impactlab.validation.errors import StudyError
 
 NO_STUDY = {

@@ -16,7 +16,7 @@ from typing import Any
 import xarray as xr
 
 from impactlab.files import identity, opened, write_netcdf
-from impactlab.study.schema.study import Declared, FunctionStudy, Study
+from impactlab.study.schema.declarations import Declared, FunctionStudy, ImpactStudy
 
 log = logging.getLogger(__name__)
 
@@ -69,7 +69,7 @@ def _origin(file: str | None) -> str:
 
 def same_runs(study: Declared, attrs: dict[str, Any]) -> bool:
     """Return True where results with these attributes are of the runs that the study asks for."""
-    from impactlab.study.schema.files import study_of_text
+    from impactlab.study.schema.readers import study_of_text
 
     if attrs.get("study_sha256") == study.sha256:
         return True
@@ -80,7 +80,7 @@ def same_runs(study: Declared, attrs: dict[str, Any]) -> bool:
     keys = ("function", "impact", "discretisation", "auto", "duration", "sampling")
     if any(getattr(stored, key, None) != getattr(study, key, None) for key in keys):
         return False
-    if isinstance(stored, FunctionStudy) or not isinstance(study, Study):
+    if isinstance(stored, FunctionStudy) or not isinstance(study, ImpactStudy):
         return True
     return bool(stored.python.items() <= study.python.items())
 

@@ -13,8 +13,8 @@ from command_line import called, done
 import impactlab as il
 from impactlab.files import read_netcdf, write_netcdf
 from impactlab.report.results import write_index
+from impactlab.study.ownership import same_runs
 from impactlab.study.steps import removable
-from impactlab.study.stored import same_runs
 
 YAML = """
 title: Ishigami

@@ -5,7 +5,7 @@ import pytest
 
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.runs import (
+from impactlab.study.inventory import (
     Work,
     file_stats,
     open_answers,
@@ -29,7 +29,7 @@ def shards(tmp_path):
 @pytest.mark.parametrize("opened", [0, 1, 2])
 def test_columns_are_in_the_order_of_the_runs(shards, monkeypatch, opened):
     """opened: shards that may stay so, of two."""
-    monkeypatch.setattr("impactlab.study.runs._OPEN", opened)
+    monkeypatch.setattr("impactlab.study.inventory._OPEN", opened)
     with open_answers(shards, RunIndex(KEYS), ["status", "force"]) as columns:
         assert [*columns] == ["status", "force"]
         assert columns["force"].compute().tolist() == [1.0, 2.0, 3.0, 2.0]
@@ -85,7 +85,7 @@ def test_it_names_who_is_at_work(small_design, tmp_path):
 @pytest.mark.parametrize("chunk", [1, 3, 100])
 def test_work_is_the_same_in_chunks(small_design, monkeypatch, chunk):
     whole = Work.of(small_design(1.0, 2.0, 3.0))
-    monkeypatch.setattr("impactlab.study.runs._CHUNK", chunk)
+    monkeypatch.setattr("impactlab.study.inventory._CHUNK", chunk)
     parts = Work.of(small_design(1.0, 2.0, 3.0))
     assert parts.keys.tobytes() == whole.keys.tobytes()
     assert parts.cost.tobytes() == whole.cost.tobytes()
@@ -95,7 +95,7 @@ def test_work_is_the_same_in_chunks(small_design, monkeypatch, chunk):
 
 
 def test_a_refused_run_is_named_by_its_number(small_design, monkeypatch):
-    monkeypatch.setattr("impactlab.study.runs._CHUNK", 2)
+    monkeypatch.setattr("impactlab.study.inventory._CHUNK", 2)
     with pytest.raises(
         ValueError, match=r"^run 4 \(velocity = -3\.0, nodes = 11\): .*velocity.*zero$"
     ):

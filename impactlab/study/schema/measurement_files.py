@@ -23,10 +23,10 @@ from impactlab.model.parameters import PARAMETERS, Parameter
 from impactlab.model.quantities import si
 from impactlab.study.schema.yaml_file import read_mapping, read_text
 from impactlab.validation.errors import unknown
-from impactlab.validation.section import (
+from impactlab.validation.fields import (
+    FileSection,
     Heading,
     Number,
-    Section,
     Text,
     at_key,
     by_name,
@@ -61,7 +61,7 @@ def _conditions(data: Any, info: ValidationInfo) -> Conditions:
     return by_name("Conditions", types, data, info)
 
 
-class _Entry(Section):
+class _Entry(FileSection):
     """One measured value, with its uncertainty and the meaning of that."""
 
     quantity: Annotated[str, BeforeValidator(_quantity)]

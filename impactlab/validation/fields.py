@@ -28,7 +28,7 @@ from impactlab.model.quantities import si, whole
 from impactlab.validation.errors import Problem, StudyError, dotted, unknown
 
 
-class Section(BaseModel):
+class FileSection(BaseModel):
     """A mapping with fixed keys; any other key is refused.
 
     The context of the validation takes the allowed keys under "keys", by the id of the mapping, so
@@ -102,7 +102,7 @@ def by_name(
 ) -> dict[str, Any]:
     """Read a mapping of some of these keys, each with its type; return it in the file's order."""
     fields: Any = {name: (kind, None) for name, kind in types.items()}
-    section = create_model(title, __base__=Section, **fields)
+    section = create_model(title, __base__=FileSection, **fields)
     content = section.model_validate(data, context=info.context)
     return {name: getattr(content, name) for name in data}
 
@@ -140,7 +140,7 @@ _ONE_LINE = requires(
 )
 
 
-class Heading(Section):
+class Heading(FileSection):
     """The first keys of every study file, which head the report."""
 
     title: Annotated[Text, StringConstraints(max_length=200), _ONE_LINE]
@@ -176,7 +176,7 @@ _NOT_HERE = {
 """Keys that people look for, as patterns, and messages for where there is no such key."""
 
 
-S = TypeVar("S", bound=Section)
+S = TypeVar("S", bound=FileSection)
 
 
 def validated(

@@ -29,12 +29,11 @@ from impactlab.model.impact import BASES, Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.model.quantities import duration
 from impactlab.solver import SCHEMES
-from impactlab.validation.refusals import Base, refusal
-from impactlab.validation.section import (
+from impactlab.validation.fields import (
+    FileSection,
     Heading,
     Names,
     Number,
-    Section,
     Whole,
     at_key,
     by_name,
@@ -42,11 +41,12 @@ from impactlab.validation.section import (
     one_of,
     quantity,
 )
+from impactlab.validation.refusals import Base, refusal
 from impactlab.validation.values import value_type
 from impactlab.variables import RESPONSES
 
 
-class Auto(Section):
+class Auto(FileSection):
     """The key `auto`: a discretisation to be found by pilot runs on corner cases of the study.
 
     tolerance: relative numerical uncertainty; responses: those that it limits; None: all.
@@ -64,7 +64,7 @@ _DEFAULTS = {
 """Defaults that the model's classes give the fields, or MISSING."""
 
 
-def _section(*path: str, **fields: Any) -> type[Section]:
+def _section(*path: str, **fields: Any) -> type[FileSection]:
     """Return the section of a part of the model, with a key per field, from PARAMETERS."""
     # a value may be null where that is the default
     nothing = WrapValidator(lambda value, read: None if value is None else read(value))
@@ -77,7 +77,7 @@ def _section(*path: str, **fields: Any) -> type[Section]:
             optional = not deeper and _DEFAULTS[name] is None
             kind = _section(*path, key) if deeper else value_type(entry)
             keys[key] = (Annotated[kind, nothing] if optional else kind, None)
-    return create_model("_".join(path), __base__=Section, **(keys | fields))
+    return create_model("_".join(path), __base__=FileSection, **(keys | fields))
 
 
 _IMPACT = _section("impact", base=(Annotated[str, one_of("base", BASES)], None))
@@ -106,7 +106,7 @@ def read_discretisation(data: Any, info: ValidationInfo) -> tuple[Discretisation
     return _changed((paper_impact(), Discretisation()), values)[1], section.auto
 
 
-def _given_values(section: Section, root: str) -> dict[str, Any]:
+def _given_values(section: FileSection, root: str) -> dict[str, Any]:
     """Return the values in a section by parameter."""
     tree = {root: section.model_dump(exclude_unset=True)}
     values = {}
@@ -129,7 +129,7 @@ def _key(name: str) -> str:
     return ".".join(PARAMETERS[name].path[1:])
 
 
-class Store(Section):
+class Store(FileSection):
     """Data kept of each run beside the responses.
 
     histories: force and displacements over time, at `samples` times. profiles: strains and
@@ -141,7 +141,7 @@ class Store(Section):
     samples: Annotated[Whole, Field(ge=2, le=100_000)] = 1000
 
 
-class Analysis(Section):
+class Analysis(FileSection):
     """Settings of sensitivity indices, and of all intervals.
 
     confidence: level of the intervals. resamples: number of bootstrap resamples, which Sobol
@@ -238,7 +238,7 @@ class StudyBase(Declared):
 
 
 @dataclass(frozen=True)
-class Study(StudyBase):
+class ImpactStudy(StudyBase):
     """A study of impacts, in SI units.
 
     impact and discretisation: the base of all runs. auto: how to find nodes, points and courant
@@ -271,6 +271,9 @@ class FunctionStudy(StudyBase):
     def python(self) -> bool:
         """True for a Python function of the user."""
         return "@" in self.function
+
+
+AnyStudy = ImpactStudy | FunctionStudy
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from impactlab.methods.sobol import Sobol
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
 from impactlab.model.parameters import PARAMETERS, flatten
-from impactlab.study.schema.files import read_any, read_study, read_verification
-from impactlab.study.schema.study import Analysis, Store, Study, Verification
+from impactlab.study.schema.declarations import Analysis, ImpactStudy, Store, Verification
+from impactlab.study.schema.readers import read_any, read_study, read_verification
 from impactlab.validation.errors import StudyError
 from impactlab.variables import RESPONSES
 from impactlab.verification.catalogue import CATALOGUE
@@ -214,7 +214,7 @@ def test_all_checks_in_the_order_of_the_catalogue(file):
 
 def test_the_key_checks_tells_the_kinds_apart(file, grid):
     assert isinstance(read_any(file(TEXT)), Verification)
-    assert isinstance(read_any(file(grid())), Study)
+    assert isinstance(read_any(file(grid())), ImpactStudy)
 
 
 @pytest.mark.parametrize(

@@ -16,24 +16,25 @@ from impactlab.methods.sampling import RandomSample
 from impactlab.methods.sobol import Sobol
 from impactlab.model.parameters import PARAMETERS, Parameter
 from impactlab.model.quantities import si_units
-from impactlab.study.schema.checks import CHECKS, further_models, limit_reasons, values_of
-from impactlab.study.schema.study import (
+from impactlab.study.schema.consistency import CHECKS, further_models, limit_reasons, values_of
+from impactlab.study.schema.declarations import (
     Analysis,
+    AnyStudy,
     FunctionStudy,
+    ImpactStudy,
     Limits,
-    Study,
     StudyFile,
     Verification,
 )
 from impactlab.study.schema.written import text_of
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source
 from impactlab.validation.errors import Problem, StudyError, unknown
-from impactlab.validation.section import Heading, Names, names, validated
+from impactlab.validation.fields import Heading, Names, names, validated
 from impactlab.variables import COORDINATES, FLAGS, RESPONSES, VARIABLES, attributes
 from impactlab.verification.functions import FUNCTIONS
 
 
-def read_any(path: str | Path) -> Study | FunctionStudy | Verification:
+def read_any(path: str | Path) -> AnyStudy | Verification:
     """Read a YAML file: a verification if it has the key `checks`, else a study of runs.
 
     docs/studies.md describes all kinds of files. Raises StudyError with every problem of the file,
@@ -44,7 +45,7 @@ def read_any(path: str | Path) -> Study | FunctionStudy | Verification:
     return _READERS[_kind(source)](source)
 
 
-def read_study(path: str | Path) -> Study | FunctionStudy:
+def read_study(path: str | Path) -> AnyStudy:
     """Read a study of runs. Raises StudyError as `read_any`, and for a file of checks."""
     declared = read_any(path)
     if isinstance(declared, Verification):
@@ -52,12 +53,12 @@ def read_study(path: str | Path) -> Study | FunctionStudy:
     return declared
 
 
-def read_impacts(path: str | Path) -> Study:
+def read_impacts(path: str | Path) -> ImpactStudy:
     """Read a study of impacts. Raises StudyError as `read_study`, and for a test function."""
     return of_impacts(read_study(path))
 
 
-def of_impacts(study: Study | FunctionStudy) -> Study:
+def of_impacts(study: AnyStudy) -> ImpactStudy:
     """Return a study of impacts. Raises StudyError for one of a function."""
     if isinstance(study, FunctionStudy):
         reason = "is a study of a function, which has no discretisation: use a study of impacts"
@@ -65,19 +66,19 @@ def of_impacts(study: Study | FunctionStudy) -> Study:
     return study
 
 
-def study_of_text(name: str, text: str, path: Path | None = None) -> Study | FunctionStudy:
+def study_of_text(name: str, text: str, path: Path | None = None) -> AnyStudy:
     """Read a study of runs from the text of NAME.yaml; see `read_any`. path: that errors name."""
     path = path or Path(f"{name}.yaml")
     source = Source(name, path, text, read_mapping(text, str(path)))
     return _of_runs(source)
 
 
-def study_of_content(name: str, content: dict[str, Any], path: Path) -> Study | FunctionStudy:
+def study_of_content(name: str, content: dict[str, Any], path: Path) -> AnyStudy:
     """Read a study of runs from the content of NAME.yaml; see `read_any`. path: errors name it."""
     return _of_runs(Source(name, path, text_of(content), content))
 
 
-def _of_runs(source: Source) -> Study | FunctionStudy:
+def _of_runs(source: Source) -> AnyStudy:
     declared = _READERS[_kind(source)](source)
     if isinstance(declared, Verification):
         raise _wrong_kind(source.path, "lists checks and has no runs", "verify")
@@ -104,16 +105,18 @@ def describe(path: Path) -> dict[str, Any]:
         study = read_any(path)
     except StudyError as error:
         return {"name": path.stem, "traits": [], "error": str(error)}
-    sampling, impacts = getattr(study, "sampling", None), isinstance(study, Study)
+    sampling, impacts = getattr(study, "sampling", None), isinstance(study, ImpactStudy)
     traits = {
         "checks": isinstance(study, Verification),
         "growing": isinstance(sampling, Sobol) and bool(sampling.until),
-        "auto": isinstance(study, Study) and study.auto is not None,
+        "auto": isinstance(study, ImpactStudy) and study.auto is not None,
         "sample": impacts and isinstance(sampling, RandomSample),
         "sobol": impacts and isinstance(sampling, Sobol),
     }
     listed = [name for name, has in traits.items() if has]
-    listed += [model.trait for model in further_models(study)] if isinstance(study, Study) else []
+    listed += (
+        [model.trait for model in further_models(study)] if isinstance(study, ImpactStudy) else []
+    )
     summary = {"name": study.name, "title": study.title, "size": study.size, "traits": listed}
     measured = list(getattr(study, "measurements", ()))
     return summary | ({"measurements": measured} if measured else {})
@@ -138,7 +141,7 @@ _STAND_INS: dict[str, Any] = {
 """Values of required sections that are wrong, so that the other sections can be checked."""
 
 
-def _study(source: Source) -> Study:
+def _study(source: Source) -> ImpactStudy:
     path, data = str(source.path), dict(source.data)
     python, units = _python_responses(data.pop("python_responses", {}), path)
     units = {name: response.units for name, response in RESPONSES.items()} | units
@@ -164,7 +167,7 @@ def _study(source: Source) -> Study:
         raise StudyError(Problem(path, "python_responses", reason))
     fields: dict[str, Any] = dict(file) | {"discretisation": grid, "auto": auto, "python": python}
     fields["analysis"] = file.analysis or Analysis()
-    return Study(name=source.name, path=source.path, text=source.text, **fields)
+    return ImpactStudy(name=source.name, path=source.path, text=source.text, **fields)
 
 
 def _python_responses(responses: Any, path: str) -> tuple[dict[str, str], dict[str, str]]:
@@ -291,7 +294,7 @@ def _verification(source: Source) -> Verification:
     return Verification(name=source.name, path=source.path, text=source.text, **values)
 
 
-_READERS: dict[str, Callable[[Source], Study | FunctionStudy | Verification]] = {
+_READERS: dict[str, Callable[[Source], AnyStudy | Verification]] = {
     "checks": _verification,
     "function": _function_study,
     "": _study,
