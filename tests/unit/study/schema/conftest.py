@@ -94,3 +94,17 @@ def problems(read):
         return [(problem.key, str(problem)) for problem in caught.value.args]
 
     return reader
+
+
+@pytest.fixture
+def refused(problems):
+    """Check that a study's text has one problem, at this key and in these words; its line."""
+
+    def check(text, key, *words):
+        ((where, line),) = problems(text)
+        assert where == key
+        for part in words:
+            assert part in line
+        return line
+
+    return check

@@ -16,76 +16,63 @@ from impactlab.study.design import design
 UNIFORM = {"distribution": "uniform", "low": 1, "high": 2}
 
 
-def test_more_runs_than_possible_are_refused(problems, grid, sample):
+def test_more_runs_than_possible_are_refused(refused, grid, sample):
     many = {"start": 1, "stop": 2, "number": 10_000}
-    ((where, said),) = problems(grid({"sampling.parameters": {"velocity": many, "gravity": many}}))
-    assert where == "sampling"
-    assert "100,000,000 runs" in said
-    ((where, said),) = problems(sample({"sampling.base_samples": 2**22}))
-    assert where == "sampling"
-    assert f"{2**22 * 6:,} runs" in said
+    varied = {"sampling.parameters": {"velocity": many, "gravity": many}}
+    refused(grid(varied), "sampling", "100,000,000 runs")
+    refused(sample({"sampling.base_samples": 2**22}), "sampling", f"{2**22 * 6:,} runs")
 
 
 @pytest.mark.parametrize("name", ["nodes", "points", "rule", "beam_span", "beam_depth"])
-def test_profiles_need_one_mesh(problems, read, grid, name):
+def test_profiles_need_one_mesh(refused, read, grid, name):
     value = flatten(paper_impact(), Discretisation())[name]
     varied = {"sampling.parameters": {name: [value]}}
-    ((key, said),) = problems(grid(varied | {"store.profiles": True}))
-    assert key == f"sampling.parameters.{name}"
-    assert "would differ between runs" in said
+    text = grid(varied | {"store.profiles": True})
+    refused(text, f"sampling.parameters.{name}", "would differ between runs")
     read(grid(varied | {"store.profiles": False}))
 
 
 @pytest.mark.parametrize(("name", "value"), [("sphere_radius", 0.02), ("sphere_density", 5000)])
-def test_a_stated_mass_leaves_no_say_to_density_and_radius(problems, read, grid, name, value):
+def test_a_stated_mass_leaves_no_say_to_density_and_radius(refused, read, grid, name, value):
     varied = {"sampling.parameters": {name: [value]}}
-    ((key, said),) = problems(grid(varied | {"impact.sphere.mass": "1.4 kg"}))
-    assert key == f"sampling.parameters.{name}"
-    assert "set impact.sphere.mass: null" in said
+    text = grid(varied | {"impact.sphere.mass": "1.4 kg"})
+    refused(text, f"sampling.parameters.{name}", "set impact.sphere.mass: null")
     assert read(grid(varied | {"impact.sphere.mass": None})).impact.sphere.mass is None
 
 
-def test_a_varied_mass_leaves_no_say_to_the_density(problems, read, grid):
-    ((key, said),) = problems(
-        grid({"sampling.parameters": {"sphere_mass": [1], "sphere_density": [5000]}})
-    )
-    assert key == "sampling.parameters.sphere_density"
-    assert "has no effect" in said
+def test_a_varied_mass_leaves_no_say_to_the_density(refused, read, grid):
+    text = grid({"sampling.parameters": {"sphere_mass": [1], "sphere_density": [5000]}})
+    refused(text, "sampling.parameters.sphere_density", "has no effect")
     both = {"sampling.parameters": {"sphere_mass": [1], "sphere_radius": [0.02]}}
     read(grid(both))
     read(grid(both | {"impact.sphere.mass": "1.4 kg"}))
 
 
-def test_combinations_in_a_grid_are_checked_and_only_they_count(problems, read, grid):
+def test_combinations_in_a_grid_are_checked_and_only_they_count(refused, read, grid):
     stiff = {"beam_youngs_modulus": [1e9, 2e9], "beam_yield_stress": [1e8, 1.5e9]}
-    ((key, said),) = problems(grid({"sampling.parameters": stiff}))
-    assert key == "sampling.parameters.beam_yield_stress"
-    assert "beam_youngs_modulus = 1000000000.0" in said
-    assert "must be below youngs_modulus" in said
+    refused(
+        grid({"sampling.parameters": stiff}),
+        "sampling.parameters.beam_yield_stress",
+        "beam_youngs_modulus = 1000000000.0",
+        "must be below youngs_modulus",
+    )
     soft = {"beam_youngs_modulus": [1e8, 2e8], "beam_yield_stress": [1e6, 2e6]}
     hard = {"beam_youngs_modulus": [1e12], "beam_yield_stress": [3e11]}
-    for each in (soft, hard):  # values of which one alone would contradict the base
-        read(grid({"sampling.parameters": each}))
+    for values in (soft, hard):  # values of which one alone would contradict the base
+        read(grid({"sampling.parameters": values}))
 
 
-def test_the_bounds_of_a_sample_are_checked_against_the_rest(problems, read, sample):
-    wide = {"distribution": "uniform", "low": 0.1, "high": 0.9}
-    ((key, said),) = problems(sample({"sampling.parameters.beam_depth": wide}))
-    assert key == "sampling.parameters.beam_depth"
-    assert "must be below the span (0.78 m)" in said
-    read(sample({"sampling.parameters.beam_depth": wide, "impact.beam.span": 1}))
+def test_the_bounds_of_a_sample_are_checked_against_the_rest(refused, read, sample):
+    key = "sampling.parameters.beam_depth"
+    wide = {key: {"distribution": "uniform", "low": 0.1, "high": 0.9}}
+    refused(sample(wide), key, "must be below the span (0.78 m)")
+    read(sample(wide | {"impact.beam.span": 1}))
 
 
 def test_contradictions_are_found_beside_mistakes_elsewhere(problems, grid):
-    text = grid(
-        {
-            "bogus": 1,
-            "impact.sphere.mass": "1.4 kg",
-            "sampling.parameters": {"sphere_radius": [0.02], "nodes": [11, 21]},
-            "store.profiles": True,
-        }
-    )
     parameters = "sampling.parameters"
+    changes = {"bogus": 1, "impact.sphere.mass": "1.4 kg", "store.profiles": True}
+    text = grid(changes | {parameters: {"sphere_radius": [0.02], "nodes": [11, 21]}})
     expected = {"bogus", f"{parameters}.sphere_radius", f"{parameters}.nodes"}
     assert {key for key, _ in problems(text)} == expected
 
@@ -96,10 +83,11 @@ def test_a_broken_section_brings_no_contradictions(problems, grid):
 
 
 @pytest.mark.parametrize("name", list(ANALYSES))
-def test_an_analysis_asked_for_by_name_must_be_possible(problems, read, grid, sample, name):
-    ((key, said),) = problems(grid({"analyses": [name]}))
-    assert key == "analyses"
-    assert name in said
+def test_an_analysis_asked_for_by_name_must_be_possible(refused, grid, name):
+    refused(grid({"analyses": [name]}), "analyses", name)
+
+
+def test_possible_analyses_are_accepted(read, grid, sample):
     assert read(grid({"analyses": "all"})).analyses
     assert read(sample({"analyses": ["sensitivity"]})).analyses == ("sensitivity",)
     several = {"nodes": [11, 21, 41], "courant": [0.2, 0.4, 0.8], "points": [3, 5]}
@@ -109,41 +97,36 @@ def test_an_analysis_asked_for_by_name_must_be_possible(problems, read, grid, sa
     read(grid({"sampling.parameters": several} | asked))
 
 
-def test_indices_over_time_need_stored_histories(problems, read, sample):
+def test_indices_over_time_need_stored_histories(refused, read, sample):
     wanted = {"analyses": ["sensitivity_over_time"]}
-    ((key, said),) = problems(sample(wanted))
-    assert (key, "store: {histories: true}" in said) == ("analyses", True)
+    refused(sample(wanted), "analyses", "store: {histories: true}")
     assert read(sample(wanted | {"store.histories": True})).store.histories
 
 
 @pytest.mark.parametrize("method", NO_DISTRIBUTION)
-def test_limits_need_runs_that_are_draws(problems, sampled, grid, method):
+def test_limits_need_runs_that_are_draws(refused, sampled, grid, method):
     number = {"morris": {"trajectories": 8}, "fast": {"samples": 1188}}
     limits = {"limits": {"peak_force": "9 kN"}}
     study = json.loads(grid(limits) if method == "grid" else sampled(method, **number[method]))
-    ((key, said),) = problems(json.dumps(study | limits))
-    assert key == "limits"
-    assert NO_DISTRIBUTION[method] in said
-    assert "use sobol" in said
+    refused(json.dumps(study | limits), "limits", NO_DISTRIBUTION[method], "use sobol")
 
 
-def test_limits_are_of_responses_of_the_study_in_their_units(problems, read, sample):
+def test_limits_are_of_responses_of_the_study_in_their_units(refused, read, sample):
     asked = {"responses": ["peak_force", "restitution"]}
-    found = read(sample(asked | {"limits": {"restitution": "30 %", "peak_force": "9 kN"}}))
-    assert found.limits == {"restitution": 0.3, "peak_force": 9000.0}
-    attrs = design(found).attrs
-    assert dict(zip(attrs["limited"], attrs["limits"], strict=True)) == found.limits
-    wrong = {"peak_force": ("9 mm", "wrong dimension"), "impulse": (1, "choose from peak_force")}
-    wrong |= {
-        "peak_forces": (1, "did you mean 'peak_force'"),
-        "restitution": (float("nan"), "finite"),
-    }
-    for name, (limit, reason) in wrong.items():
-        ((key, said),) = problems(sample(asked | {"limits": {name: limit}}))
-        assert key == f"limits.{name}"
-        assert reason in said
-    ((key, said),) = problems(sample({"limits": {"impulse": 1}, "analyses": ["sensitivity"]}))
-    assert (key, "list it in analyses" in said) == ("limits", True)
+    study = read(sample(asked | {"limits": {"restitution": "30 %", "peak_force": "9 kN"}}))
+    assert study.limits == {"restitution": 0.3, "peak_force": 9000.0}
+    attrs = design(study).attrs
+    assert dict(zip(attrs["limited"], attrs["limits"], strict=True)) == study.limits
+    wrong = [
+        ("peak_force", "9 mm", "wrong dimension"),
+        ("impulse", 1, "choose from peak_force"),
+        ("peak_forces", 1, "did you mean 'peak_force'"),
+        ("restitution", float("nan"), "finite"),
+    ]
+    for name, limit, reason in wrong:
+        refused(sample(asked | {"limits": {name: limit}}), f"limits.{name}", reason)
+    text = sample({"limits": {"impulse": 1}, "analyses": ["sensitivity"]})
+    refused(text, "limits", "list it in analyses")
 
 
 SOLID = {
@@ -177,17 +160,9 @@ def test_sizes_can_be_varied(read, grid, name, values, read_as):
     ("changes", "key", "said"),
     [
         ({"discretisation": {"nodes": 51}}, "discretisation.element_size", "is required"),
-        (
-            {"responses": "all"},
-            "responses",
-            "contact_dissipation is not available with",
-        ),
+        ({"responses": "all"}, "responses", "contact_dissipation is not available with"),
         ({"store": {"profiles": True}}, "store.profiles", "must be false"),
-        (
-            {"discretisation": "auto"},
-            "discretisation.auto",
-            "is not possible with",
-        ),
+        ({"discretisation": "auto"}, "discretisation.auto", "is not possible with"),
         (
             {"sampling.parameters": {"velocity": [1.0]}},
             "discretisation.element_size",
@@ -211,15 +186,13 @@ def test_what_contradicts_it_is_told_at_its_key(problems, grid, changes, key, sa
     assert said in found[key]
 
 
-def test_a_sample_has_no_solid(problems, sample):
+def test_a_sample_has_no_solid(refused, sample):
     changes = {
         "impact.beam_model": "solid",
         "discretisation": {"element_size": "1 mm"},
         "responses": ["peak_force"],
     }
-    ((key, said),) = problems(sample(changes))
-    assert key == "sampling.method"
-    assert "method: grid" in said
+    refused(sample(changes), "sampling.method", "method: grid")
 
 
 def test_corners_are_those_of_every_word(read, grid):

@@ -120,54 +120,44 @@ WRONG_IN_DISTRIBUTION = [
 ]
 
 
-@pytest.mark.parametrize(("key", "value", "words"), WRONG_IN_GRID)
-def test_one_mistake_in_a_grid_is_one_problem_at_its_key(problems, grid, key, value, words):
-    ((where, said),) = problems(grid({key: value}))
-    assert where == key
-    assert words in said
-    assert re.search(rf"some-study_1\.yaml: {re.escape(key)}( = .*)?: ", said)
+PARAMETERS = "sampling.parameters"
+MISTAKES = [
+    *(("grid", {key: value}, key, words) for key, value, words in WRONG_IN_GRID),
+    *(
+        ("grid", {PARAMETERS: {name: values}}, f"{PARAMETERS}.{key}", words)
+        for name, values, key, words in WRONG_IN_AXIS
+    ),
+    *(
+        ("sample", {f"sampling.{key}": value}, f"sampling.{key}", words)
+        for key, value, words in WRONG_IN_SAMPLE
+    ),
+    *(
+        ("sample", {f"{PARAMETERS}.beam_depth": depth}, f"{PARAMETERS}.{key}", words)
+        for depth, key, words in WRONG_IN_DISTRIBUTION
+    ),
+]
 
 
-@pytest.mark.parametrize(("name", "given", "key", "words"), WRONG_IN_AXIS)
-def test_a_mistake_in_an_axis_is_one_problem_at_its_key(problems, grid, name, given, key, words):
-    ((where, said),) = problems(grid({"sampling.parameters": {name: given}}))
-    assert where == f"sampling.parameters.{key}"
-    assert words in said
+@pytest.mark.parametrize(("kind", "changes", "key", "words"), MISTAKES)
+def test_one_mistake_is_one_problem_at_its_key(refused, request, kind, changes, key, words):
+    line = refused(request.getfixturevalue(kind)(changes), key, words)
+    assert re.search(rf"some-study_1\.yaml: {re.escape(key)}( = .*)?: ", line)
 
 
-@pytest.mark.parametrize(("key", "value", "words"), WRONG_IN_SAMPLE)
-def test_one_mistake_in_a_sample_is_one_problem_at_its_key(problems, sample, key, value, words):
-    ((where, said),) = problems(sample({f"sampling.{key}": value}))
-    assert where == f"sampling.{key}"
-    assert words in said
+def test_the_value_is_shown_as_it_stands_in_the_file(refused, grid):
+    key = "impact.velocity"
+    for value, shown in (("0.99 kg", "'0.99 kg'"), (None, "null")):
+        refused(grid({key: value}), key, f"{key} = {shown}: ")
+    assert len(refused(grid({key: "9" * 5000}), key)) < 300
 
 
-@pytest.mark.parametrize(("given", "key", "words"), WRONG_IN_DISTRIBUTION)
-def test_a_mistake_in_a_distribution_is_one_problem_at_its_key(problems, sample, given, key, words):
-    ((where, said),) = problems(sample({"sampling.parameters.beam_depth": given}))
-    assert where == f"sampling.parameters.{key}"
-    assert words in said
+def test_an_unknown_response_is_named_with_the_nearest_and_all_choices(refused, grid):
+    text = grid({"responses": ["peak_force", "contact_durations"]})
+    refused(text, "responses.1", "did you mean 'contact_duration'?", *RESPONSES)
 
 
-def test_the_value_is_shown_as_it_stands_in_the_file(problems, grid):
-    ((_, said),) = problems(grid({"impact.velocity": "0.99 kg"}))
-    assert "impact.velocity = '0.99 kg': " in said
-    ((_, said),) = problems(grid({"impact.velocity": None}))
-    assert "impact.velocity = null: " in said
-    ((_, said),) = problems(grid({"impact.velocity": "9" * 5000}))
-    assert len(said) < 300
-
-
-def test_an_unknown_response_is_named_with_the_nearest_and_all_choices(problems, grid):
-    ((where, said),) = problems(grid({"responses": ["peak_force", "contact_durations"]}))
-    assert where == "responses.1"
-    assert "did you mean 'contact_duration'?" in said
-    assert all(name in said for name in RESPONSES)
-
-
-def test_without_a_base_all_that_is_missing_is_named_at_once(problems, grid):
-    ((where, said),) = problems(grid({"impact": {"velocity": 1, "beam": {"span": 1}}}))
-    assert where == "impact"
+def test_without_a_base_all_that_is_missing_is_named_at_once(refused, grid):
+    said = refused(grid({"impact": {"velocity": 1, "beam": {"span": 1}}}), "impact")
     named = set(said.partition("required too: ")[2].split(", "))
     material = {"density", "youngs_modulus", "poissons_ratio", "yield_stress"}
     assert named == (
@@ -183,10 +173,8 @@ def test_keys_that_are_no_words_are_named(problems, grid):
 
 
 @pytest.mark.parametrize("title", [r'"\e[31mred"', r'"\ud800"'])
-def test_text_that_cannot_be_printed_is_refused(problems, grid, title):
-    ((key, said),) = problems(grid().replace("A grid", title))
-    assert key == "title"
-    assert said.isprintable()
+def test_text_that_cannot_be_printed_is_refused(refused, grid, title):
+    assert refused(grid().replace("A grid", title), "title").isprintable()
 
 
 def test_all_problems_of_a_file_come_at_once(problems, sample):

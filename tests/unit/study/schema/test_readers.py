@@ -57,14 +57,8 @@ def test_committed_studies_are_sound(path):
 
 def test_committed_studies_are_those_asked_for():
     by_name = {path.stem: path for path in STUDIES}
-    assert {
-        "velocity",
-        "discretisation",
-        "material",
-        "sobol",
-        "smoke",
-        "verification",
-    } <= by_name.keys()
+    names = "velocity discretisation material sobol smoke verification"
+    assert set(names.split()) <= by_name.keys()
     large = read_study(by_name["sobol_large"]).sampling
     assert isinstance(large, Sobol)
     assert (large.base_samples, large.second_order) == (4096, True)
@@ -198,23 +192,17 @@ def said(read, path):
     return str(caught.value)
 
 
-def test_a_list_of_checks(file):
+def test_a_list_of_checks(file, grid):
     path = file(TEXT)
-    read = read_verification(path)
-    assert (read.name, read.path, read.text) == ("some", path, TEXT)
-    assert (read.title, read.description) == ("Checks", "")
-    assert read.checks == ("half_space",)
-    assert read.size == "1 check"
-    assert read.sha256 == hashlib.sha256(TEXT.encode()).hexdigest()
-
-
-def test_all_checks_in_the_order_of_the_catalogue(file):
-    assert read_verification(file("title: x\nchecks: all\n")).checks == tuple(CATALOGUE)
-
-
-def test_the_key_checks_tells_the_kinds_apart(file, grid):
-    assert isinstance(read_any(file(TEXT)), Verification)
+    study = read_verification(path)
+    assert (study.name, study.path, study.text) == ("some", path, TEXT)
+    assert (study.title, study.description) == ("Checks", "")
+    assert study.checks == ("half_space",)
+    assert study.size == "1 check"
+    assert study.sha256 == hashlib.sha256(TEXT.encode()).hexdigest()
+    assert isinstance(read_any(path), Verification)
     assert isinstance(read_any(file(grid())), ImpactStudy)
+    assert read_verification(file("title: x\nchecks: all\n")).checks == tuple(CATALOGUE)
 
 
 @pytest.mark.parametrize(
@@ -235,9 +223,9 @@ def test_the_key_checks_tells_the_kinds_apart(file, grid):
 def test_mistakes_name_file_and_key(file, text, words):
     path = file(text)
     for read in (read_any, read_verification):
-        told = said(read, path)
-        assert words in told
-        assert all(line.startswith(f"{path}: ") for line in told.splitlines())
+        lines = said(read, path)
+        assert words in lines
+        assert all(line.startswith(f"{path}: ") for line in lines.splitlines())
 
 
 def test_all_mistakes_are_told_at_once(file):

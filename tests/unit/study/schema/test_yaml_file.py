@@ -49,9 +49,12 @@ def test_a_study_is_named_by_a_plain_word(problems, grid, name):
     assert "name" in said
 
 
-def test_a_file_that_is_not_there(tmp_path):
+def test_a_file_that_is_not_there_or_a_folder_is_named(tmp_path):
     with pytest.raises(StudyError, match=r"nothing\.yaml: there is no such file"):
         read_study(tmp_path / "nothing.yaml")
+    (tmp_path / "folder.yaml").mkdir()
+    with pytest.raises(StudyError, match=r"folder\.yaml: is not a file"):
+        read_study(tmp_path / "folder.yaml")
 
 
 @pytest.mark.parametrize("given", ["large", "large.yaml", "elsewhere/large.yaml", "studies/large"])
@@ -63,12 +66,6 @@ def test_a_name_leads_to_the_study_of_that_name(given, tmp_path, monkeypatch):
     (tmp_path / "studies" / "large.yaml").touch()
     with pytest.raises(StudyError, match=r"no such file; did you mean studies/large\.yaml\?$"):
         read_study(given)
-
-
-def test_a_folder_is_no_study(tmp_path):
-    (tmp_path / "folder.yaml").mkdir()
-    with pytest.raises(StudyError, match=r"folder\.yaml: is not a file"):
-        read_study(tmp_path / "folder.yaml")
 
 
 def test_a_file_that_starts_with_a_byte_order_mark(read, grid):
