@@ -63,8 +63,7 @@ def test_a_peak_has_passed_where_the_largest_indentation_begins_to_fall(
 
 
 def test_the_first_contact_begins_at_zero(events):
-    assert events.contacts == 1
-    assert events.touching == 1
+    assert (events.contacts, events.touching) == (1, 1)
     follow(events, [0.0])
     assert events.touching == 1
     assert np.isnan([events.t_first_end, events.v_exit, events.t_peak]).all()

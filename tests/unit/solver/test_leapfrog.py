@@ -36,13 +36,6 @@ def test_time_steps_fill_the_duration_and_obey_the_courant_number(make_case, cou
     assert grid.dt <= courant * critical < grid.dt * (steps + 1) / (steps - 1)
 
 
-def test_mid_span_is_a_node(make_case):
-    grid, _, _ = steps_of(make_case(nodes=31))
-    assert grid.mid == 16
-    assert grid.dx == pytest.approx(0.78 / 30)
-    assert grid.mu == pytest.approx(7800 * 0.06 * 0.0278)
-
-
 def test_samples_are_interpolated_between_the_steps():
     cases = table(duration=2e-4)
     _, steps, _ = steps_of(cases[0])
@@ -53,11 +46,6 @@ def test_samples_are_interpolated_between_the_steps():
         for name in HISTORIES:
             expected = np.interp(np.linspace(0, 2e-4, samples), times, every[name][0])
             assert some[name][0] == pytest.approx(expected, rel=1e-9, abs=1e-15), (name, samples)
-
-
-def test_histories_start_at_first_touch():
-    answers = solve(table(), samples=5)
-    assert [answers[name][0, 0] for name in HISTORIES] == len(HISTORIES) * [0.0]
 
 
 def test_a_run_of_one_step_is_free_flight():

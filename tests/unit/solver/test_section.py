@@ -14,11 +14,9 @@ from impactlab.solver import RULES
 from impactlab.solver.fibre_plasticity import plastic_energies
 from impactlab.solver.section import bend as bend_row
 from impactlab.solver.section import (
-    dissipated_energy,
     elastic_range,
     make_section,
     return_mapping,
-    stored_energy,
 )
 from impactlab.verification.solutions import quadrature
 
@@ -134,12 +132,6 @@ def path(*turns, steps=200):
 
 
 @every_fibre_hardening
-@pytest.mark.parametrize("share", [-0.999, -0.5, 0.0, 0.5, 0.999])
-def test_below_yield_nothing_flows(H_i, H_k, share):
-    assert return_mapping(share * YIELD_STRAIN, 0.0, 0.0, E, S_y, H_i, H_k) == (0.0, 0.0)
-
-
-@every_fibre_hardening
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_one_step_is_the_closed_form(H_i, H_k, sign):
     """stress = S_y + H (strain - yield strain) E/(E + H), H the sum of the moduli."""
@@ -178,18 +170,12 @@ def reverse_yield_stress(H_i, H_k):
     return stress, E * (least - plastic)
 
 
-def test_bauschinger_with_kinematic_hardening():
-    """The elastic range keeps its width of 2 S_y."""
-    stress, reverse = reverse_yield_stress(0.0, 20e9)
+@pytest.mark.parametrize("kinematic", [True, False])
+def test_bauschinger_with_kinematic_hardening_alone(kinematic):
+    """The elastic range keeps its width of 2 S_y; isotropic hardening widens it to both sides."""
+    stress, reverse = reverse_yield_stress(*((0.0, 20e9) if kinematic else (20e9, 0.0)))
     assert stress > 1.2 * S_y
-    assert reverse == pytest.approx(stress - 2 * S_y, rel=1e-12)
-
-
-def test_no_bauschinger_with_isotropic_hardening():
-    """The elastic range widens: the fibre yields in reverse at the opposite stress."""
-    stress, reverse = reverse_yield_stress(20e9, 0.0)
-    assert stress > 1.2 * S_y
-    assert reverse == pytest.approx(-stress, rel=1e-12)
+    assert reverse == pytest.approx(stress - 2 * S_y if kinematic else -stress, rel=1e-12)
 
 
 def test_cycles_shake_down_with_isotropic_hardening_alone():
@@ -201,26 +187,3 @@ def test_cycles_shake_down_with_isotropic_hardening_alone():
     # the loop repeats itself: each half slips by (4 eps_y E - 2 S_y)/(E + H_k)
     expected = 2 * (4 * YIELD_STRAIN * E - 2 * S_y) / (E + 60e9)
     assert np.diff(kinematic[cycle])[0] == pytest.approx(expected, rel=1e-10)
-
-
-@every_fibre_hardening
-def test_elastic_range_ends_where_the_fibre_yields(H_i, H_k):
-    _, plastic, peeq = strain_fibre(path(4, -3, 5), H_i, H_k)[:, -1]
-    least, largest = elastic_range(plastic, peeq, E, S_y, H_i, H_k)
-    small = 1e-9 * YIELD_STRAIN
-    assert largest == pytest.approx(5 * YIELD_STRAIN, rel=1e-12)
-    for inside in (least + small, largest - small):
-        assert return_mapping(inside, plastic, peeq, E, S_y, H_i, H_k) == (plastic, peeq)
-    for outside in (least - small, largest + small):
-        assert return_mapping(outside, plastic, peeq, E, S_y, H_i, H_k)[1] > peeq
-
-
-@every_fibre_hardening
-def test_work_is_stored_or_dissipated(H_i, H_k):
-    """Around a path that ends at zero strain, the integral of stress over strain."""
-    strains = path(5, -4, 2, 0, steps=1000)
-    stress, plastic, peeq = strain_fibre(strains, H_i, H_k)
-    work = np.trapezoid(stress, strains)
-    stored = stored_energy(plastic[-1], E, H_k)
-    assert stored > 0
-    assert stored + dissipated_energy(peeq[-1], S_y, H_i) == pytest.approx(work, rel=1e-4)

@@ -13,10 +13,8 @@ from impactlab.solver.contact.history import make_pair
 from impactlab.solver.section import make_section
 from impactlab.solver.stability import _stiffness, largest_time_step, stiffest_contact
 from impactlab.variables import STATUS_FLAGS
-from impactlab.verification.solutions import hertz
 from impactlab.verification.solutions.contact_laws import LAWS as REFERENCE
 from impactlab.verification.solutions.contact_laws import joints, law_on_half_space
-from impactlab.verification.solutions.stronge import StrongeImpact
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
@@ -64,39 +62,6 @@ def test_close_to_the_limit_where_bending_or_the_contact_alone_sets_it(make_case
     assert ours == pytest.approx(exact, rel=0.01)
 
 
-@pytest.mark.parametrize("velocity", [0.01, 0.99, 20.0])
-def test_stiffest_hertz_contact(make_case, velocity):
-    """2 E* sqrt(R* delta_m) at the deepest indentation that the sphere's energy can drive."""
-    case = make_case(velocity=velocity, contact="hertz", gravity=0.0)
-    pair = make_pair(case)
-    deepest = hertz.maximum_indentation(case.sphere_mass, velocity, pair.E, pair.R)
-    exact = 2 * pair.E * np.sqrt(pair.R * deepest)
-    assert exact <= stiffest_contact(case, pair) < 1.2 * exact
-
-
-def stronge_stiffness(law, deepest):
-    """Largest tangent stiffness of loading and unloading up to `deepest`."""
-    depths = np.linspace(1e-3, 1, 2000) * deepest
-    loading = np.gradient([law.loading_force(depth) for depth in depths], depths)
-    unloading = [
-        (law.loading_force(depth) - law.unloading_force(depth * (1 - 1e-6), depth)) / (1e-6 * depth)
-        for depth in depths
-    ]
-    return max(*loading, *unloading)
-
-
-@pytest.mark.parametrize("velocity", [0.01, 0.1, 0.99, 5.0, 20.0])
-def test_stiffest_stronge_contact(make_case, velocity):
-    """Not below what the sphere's energy can reach, nor far above it."""
-    case = make_case(velocity=velocity, contact="stronge", gravity=0.0)
-    pair = make_pair(case)
-    law = StrongeImpact(pair.E, pair.R, pair.S_y)
-    deepest = law.maximum_indentation(velocity, case.sphere_mass)
-    k_c = stiffest_contact(case, pair)
-    assert 0.999 * stronge_stiffness(law, deepest) <= k_c
-    assert k_c <= 1.01 * stronge_stiffness(law, 1.25 * deepest)
-
-
 def stiffness_of(law, deepest):
     """Largest tangent stiffness of loading (jumps left out) and unloading up to any depth.
 
@@ -125,7 +90,7 @@ def test_stiffest_contact_of_every_law_derived_twice(make_case, contact, velocit
     for speed, deepest in zip(speeds, depths, strict=True):
         case = make_case(velocity=speed, contact=contact, gravity=0.0)
         k_c = stiffest_contact(case, make_pair(case))
-        assert 0.97 * stiffness(deepest) <= k_c
+        assert (0.999 if contact in ("hertz", "stronge") else 0.97) * stiffness(deepest) <= k_c
         if CONTACT_LAWS[contact].unloading_start == 1.0:
             assert k_c <= 1.03 * stiffness(1.25 * deepest)
 

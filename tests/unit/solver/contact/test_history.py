@@ -74,16 +74,6 @@ def test_unloading_leaves_the_furthest_point_without_a_jump_and_never_pulls(law)
     assert force(contact, pair, contact.delta_r) == 0.0
 
 
-def test_stronge_unloads_to_a_dent_and_hertz_to_none():
-    dents = {}
-    for law in LAWS:
-        contact = untouched()
-        load(contact, pair_of(law), DEEP)
-        dents[law] = contact.delta_r
-    assert dents["hertz"] == 0.0
-    assert dents["stronge"] == pytest.approx(STRONGE.residual_indentation(DEEP), rel=1e-12)
-
-
 @every_law
 @pytest.mark.parametrize("exponent", [1.5, 2.0])
 def test_unloading_follows_the_exponent_of_the_curve(law, exponent):
@@ -95,20 +85,18 @@ def test_unloading_follows_the_exponent_of_the_curve(law, exponent):
     assert force(contact, pair, contact.delta_r + over) == pytest.approx(expected, rel=1e-14)
 
 
+WITHIN = [(0.0, 1.0), (1.0, 1.3), (3.0, 4.0), (60.0, 75.0), (90.0, 300.0)]
+ACROSS = [(0.0, 30.0), (0.5, 2.0), (50.0, 120.0)]
+"""Indentations of first yield: from beginning to end of a regime, and beyond its limit."""
+
+
 @pytest.mark.parametrize(
-    ("start", "stop"), [(0.0, 1.0), (1.0, 1.3), (3.0, 4.0), (60.0, 75.0), (90.0, 300.0)]
+    ("ends", "accuracy"), [*((ends, 1e-9) for ends in WITHIN), *((ends, 1e-4) for ends in ACROSS)]
 )
-def test_loading_work_is_the_closed_form_within_a_regime(start, stop):
-    start, stop = start * STRONGE.yield_indentation, stop * STRONGE.yield_indentation
+def test_loading_work_is_the_closed_form(ends, accuracy):
+    start, stop = np.array(ends) * STRONGE.yield_indentation
     expected = STRONGE.loading_work(stop) - STRONGE.loading_work(start)
-    assert loading_work(pair_of("stronge"), start, stop) == pytest.approx(expected, rel=1e-9)
-
-
-@pytest.mark.parametrize(("start", "stop"), [(0.0, 30.0), (0.5, 2.0), (50.0, 120.0)])
-def test_loading_work_across_the_limit_of_a_regime(start, stop):
-    start, stop = start * STRONGE.yield_indentation, stop * STRONGE.yield_indentation
-    expected = STRONGE.loading_work(stop) - STRONGE.loading_work(start)
-    assert loading_work(pair_of("stronge"), start, stop) == pytest.approx(expected, rel=1e-4)
+    assert loading_work(pair_of("stronge"), start, stop) == pytest.approx(expected, rel=accuracy)
 
 
 @every_law
@@ -145,14 +133,6 @@ def test_work_along_a_path_is_stored_or_dissipated(law):
     assert stored == 0.0
     assert dissipated == pytest.approx(rest, abs=1e-5 * first)
     assert dissipated > 0.1 * first or law == "hertz"
-
-
-@every_law
-def test_asking_for_the_energies_changes_nothing(law):
-    contact, pair = untouched(), pair_of(law)
-    load(contact, pair, DEEP)
-    energies(contact, pair, 0.8 * DEEP)
-    assert energies(contact, pair, 0.8 * DEEP) == energies(contact, pair, 0.8 * DEEP)
 
 
 def test_pair_of_the_papers_case(make_case):

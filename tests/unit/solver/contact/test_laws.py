@@ -11,7 +11,6 @@ import pytest
 from scipy.integrate import quad
 
 from impactlab.solver.contact import CONTACT_LAWS, LAWS
-from impactlab.solver.contact.history import CONTACT, Pair, energies, force, load
 from impactlab.solver.contact.switch import curve, limit
 from impactlab.verification.solutions.contact_laws import LAWS as REFERENCE
 from impactlab.verification.solutions.contact_laws import LawOnHalfSpace, joints
@@ -53,13 +52,10 @@ def test_the_laws_are_derived_twice():
 
 def test_every_law_has_its_file_and_its_texts():
     for name in LAWS:
-        file = import_module(f"impactlab.solver.contact.{name}")
-        assert file.__doc__
+        assert import_module(f"impactlab.solver.contact.{name}").__doc__
         law = CONTACT_LAWS[name]
         assert law.name == name
-        assert law.title
-        assert law.source
-        assert law.holds_for
+        assert all((law.title, law.source, law.holds_for))
 
 
 def test_the_page_has_every_law_derived_twice_and_none_that_is_unknown():
@@ -175,21 +171,6 @@ def test_dent_is_shallower_than_the_indentation_even_beyond_the_range(law, bodie
     assert np.all(delta_r < deltas)
     assert np.all(K > 0)
     assert np.all(n > 1)
-
-
-@every_law
-def test_unloading_and_reloading_are_one_curve_and_its_work_is_the_energy_given_back(law):
-    pair = Pair(LAWS.index(law), *STEEL)
-    contact = np.zeros(1, CONTACT)[0]
-    deepest = 30 * first_yield("stronge")
-    load(contact, pair, deepest)
-    below = np.linspace(contact.delta_r, deepest * (1 - 1e-12), 2001)
-    back = [force(contact, pair, delta) for delta in below[::-1]]
-    again = [force(contact, pair, delta) for delta in below]
-    assert back[::-1] == again
-    assert min(again) == 0.0
-    stored, _ = energies(contact, pair, deepest)
-    assert np.trapezoid(again, below) == pytest.approx(stored, rel=1e-5)
 
 
 @every_law

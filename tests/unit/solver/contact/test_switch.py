@@ -22,13 +22,6 @@ def test_a_number_gives_the_law_of_that_name(law):
     assert curve(LAWS.index(law), *ARGS) == module.curve(*ARGS)
 
 
-def test_laws_differ():
-    """At one of two depths: some begin as another one, others end so."""
-    depths = ARGS[0], 0.1 * ARGS[0]
-    curves = [tuple(curve(law, d, *ARGS[1:]) for d in depths) for law in range(len(LAWS))]
-    assert len(set(curves)) == len(LAWS)
-
-
 @pytest.mark.parametrize("number", [-1, len(LAWS)])
 def test_an_unknown_number_gives_no_force(number):
     assert np.isnan(curve(number, *ARGS)[:3]).all()
