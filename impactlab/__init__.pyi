@@ -1,9 +1,9 @@
 from . import plot as plot
 from .analysis.analyse import analyse as analyse
 from .analysis.surrogate import load_surrogate as load_surrogate
-from .api import Study as Study
-from .api import calibrate as calibrate
-from .api import compare as compare
+from .api.definition import Study as Study
+from .api.experiment import calibrate as calibrate
+from .api.experiment import compare as compare
 from .methods.delta import Delta as Delta
 from .methods.distributions import Choice as Choice
 from .methods.distributions import Lognormal as Lognormal

@@ -12,9 +12,8 @@ from pydantic import Field, TypeAdapter, ValidationInfo, model_validator
 
 from impactlab.methods.sampling import Sampling
 from impactlab.model.parameters import Parameter, Value
-from impactlab.validation.fields import FileSection, Whole, at_key, one_of
+from impactlab.validation.fields import FileSection, Whole, at_key, one_of, value_type
 from impactlab.validation.refusals import check_alone
-from impactlab.validation.values import value_type
 
 Q = TypeVar("Q", bound=float)
 MOST_VALUES = 10_000

@@ -25,9 +25,8 @@ from impactlab.methods.runs import Sample
 from impactlab.model.parameters import Parameter, Value
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown
-from impactlab.validation.fields import Names, Whole, at_key, by_name, name_at
+from impactlab.validation.fields import LABEL, Names, Whole, at_key, by_name, name_at
 from impactlab.validation.stated import Stated
-from impactlab.validation.values import LABEL
 
 MOST_RUNS = 10_000_000
 _EDGE = 2.0**-31

@@ -26,6 +26,7 @@ from pydantic_core import PydanticCustomError
 from impactlab.model.parameters import PARAMETERS, Parameter
 from impactlab.model.quantities import si, whole
 from impactlab.validation.errors import Problem, StudyError, dotted, unknown
+from impactlab.validation.refusals import check_alone
 
 
 class FileSection(BaseModel):
@@ -132,6 +133,17 @@ Text = Annotated[
         "holds characters that cannot be printed: take them out",
     ),
 ]
+
+LABEL = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")
+"""Names of a study's own; no formulas in tables, and no labels that a legend leaves out."""
+
+
+def value_type(parameter: Parameter) -> Any:
+    """Return the type of one value: a word, a whole number, or a number in SI units."""
+    if parameter.choices:
+        return Annotated[str, one_of(parameter.long_name, parameter.choices)]
+    number = Whole if parameter.is_integer else quantity(parameter.units)
+    return Annotated[number, AfterValidator(partial(check_alone, parameter))]
 
 
 _ONE_LINE = requires(

@@ -16,6 +16,9 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from pydantic import ConfigDict, TypeAdapter, ValidationInfo, model_validator
 
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Impact, paper_impact
+from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.model.quantities import as_text
 
 
@@ -74,6 +77,10 @@ def plain(value: Any) -> Any:
     """
     if isinstance(value, Stated):
         return value.stated()
+    if isinstance(value, Impact):
+        return _parameters("impact", value, Discretisation())
+    if isinstance(value, Discretisation):
+        return _parameters("discretisation", paper_impact(), value)
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if isinstance(value, Mapping):
@@ -83,3 +90,16 @@ def plain(value: Any) -> Any:
     if not isinstance(text := as_text(value), str | int | float | list | None):
         raise ValueError(f"is of type {type(value).__name__}, which no study file can hold")
     return text
+
+
+def _parameters(root: str, impact: Impact, grid: Discretisation) -> dict[str, Any]:
+    """Return every value as a section of a study file: defaults, too, which may change."""
+    section: dict[str, Any] = {}
+    for name, value in flatten(impact, grid).items():
+        key, *path, last = PARAMETERS[name].path
+        if key == root:
+            node = section
+            for step in path:
+                node = node.setdefault(step, {})
+            node[last] = value
+    return section

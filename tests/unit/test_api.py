@@ -25,7 +25,7 @@ from impactlab.methods.sampling import Sampling
 from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.study import steps
 from impactlab.study.schema.readers import read_study
-from impactlab.study.schema.written import content_of
+from impactlab.validation.stated import plain
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
@@ -150,7 +150,7 @@ def test_an_impact_is_the_same_to_the_last_bit_in_the_file(impact):
 @pytest.mark.parametrize("value", [GRID, FAR, il.Discretisation(nodes=201, scheme="leapfrog")])
 def test_every_value_of_an_object_is_in_the_file(value):
     """Defaults are stated, too: another version may have others."""
-    (section,) = content_of({"section": value}).values()
+    section = plain(value)
     own, other = (value, il.Discretisation()) if value is FAR else (FAR, value)
     for name, held in flatten(own, other).items():
         root, *path = PARAMETERS[name].path

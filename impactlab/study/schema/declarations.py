@@ -40,9 +40,9 @@ from impactlab.validation.fields import (
     names,
     one_of,
     quantity,
+    value_type,
 )
 from impactlab.validation.refusals import Base, refusal
-from impactlab.validation.values import value_type
 from impactlab.variables import RESPONSES
 
 

@@ -32,9 +32,9 @@ from impactlab.validation.fields import (
     by_name,
     requires,
     validated,
+    value_type,
 )
 from impactlab.validation.stated import plain
-from impactlab.validation.values import value_type
 from impactlab.variables import RESPONSES
 
 Conditions = Mapping[str, Any]

@@ -26,8 +26,7 @@ from impactlab.study.schema.declarations import (
     StudyFile,
     Verification,
 )
-from impactlab.study.schema.written import text_of
-from impactlab.study.schema.yaml_file import Source, read_mapping, read_source
+from impactlab.study.schema.yaml_file import Source, read_mapping, read_source, text_of
 from impactlab.validation.errors import Problem, StudyError, unknown
 from impactlab.validation.fields import Heading, Names, names, validated
 from impactlab.variables import COORDINATES, FLAGS, RESPONSES, VARIABLES, attributes

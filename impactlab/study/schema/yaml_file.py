@@ -1,4 +1,4 @@
-"""YAML files of bounded size, read as plain Python data.
+"""YAML files of bounded size, read as plain Python data, and their text.
 
 Aliases and merge keys let a short text stand for more than a machine can hold. Their expanded size
 is counted on the parsed graph, in a time that grows with the text alone, before it is built.
@@ -6,9 +6,10 @@ is counted on the parsed graph, in a time that grows with the text alone, before
 
 from __future__ import annotations
 
+import io
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -109,6 +110,16 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
             return data
         raise StudyError(Problem(file, "", "holds no keys such as `title: ...`"))
     raise StudyError(Problem(file, "", f"is not YAML: {(problem.splitlines() or [''])[0]}"))
+
+
+def text_of(content: Mapping[str, Any]) -> str:
+    """Return the text of a study file with this content."""
+    yaml: Any = YAML(typ="safe", pure=True)
+    text = io.StringIO()
+    yaml.default_flow_style, yaml.sort_base_mapping_type_on_output = None, False
+    yaml.width, yaml.allow_unicode = 96, True
+    yaml.dump(content, text)
+    return text.getvalue()
 
 
 MOST = 50_000

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import impactlab as il
+from impactlab.api.folder import StudyFolder
 from impactlab.study.adaptive.recommendation import corner_cases
 from impactlab.study.estimate import estimate
 from impactlab.study.schema.readers import study_of_text
@@ -138,7 +139,7 @@ def test_refused_beside_words(problems, text, given, key, words):
 def test_runs_are_those_of_the_words(text, tmp_path):
     """Against the same impacts one by one, and stored words against drawn ones."""
     models = {"distribution": "choice", "values": ["euler_bernoulli", "timoshenko"]}
-    study = il.Study._of(
+    study = StudyFolder(
         study_of_text("some", text("pawn", parameters={"beam_model": models}, samples=100)),
         tmp_path,
     )

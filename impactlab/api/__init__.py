@@ -1,0 +1,1 @@
+"""What `import impactlab as il` adds to the functions behind the commands."""
