@@ -5,8 +5,6 @@ Source: the Keywords Guide, of which *CONTACT PAIR, *SECTION CONTROLS, *PLASTIC 
 HARDENING were read (2016, 2017); the rest is from memory.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, field
 from pathlib import Path

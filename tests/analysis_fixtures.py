@@ -1,7 +1,5 @@
 """Synthetic runs datasets, as the data contract has them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any

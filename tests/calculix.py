@@ -1,7 +1,5 @@
 """Runs of CalculiX on a deck, and a parser of its output."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -1,7 +1,5 @@
 """Study files with random damage: every kind of study, every kind of mistake, and raw bytes."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

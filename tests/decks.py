@@ -1,7 +1,5 @@
 """A parser of input decks, independent of the code that writes them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Look-ups of the tests in a drawn figure."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

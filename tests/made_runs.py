@@ -1,7 +1,5 @@
 """Made-up runs and analyses in the form of stored ones: of plausible size, not physics."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any

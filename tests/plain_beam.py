@@ -8,8 +8,6 @@ contact laws beyond the paper's.
 SI units; z and w point downwards.
 """
 
-from __future__ import annotations
-
 import math
 from types import FunctionType
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Sample studies made up after the data contract, with every variable that an analysis may give."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -6,8 +6,6 @@ inertia, and taken from the centre of mass. What this gives beyond a half-space,
 pressure, is an extra compliance (here below zero: stiffer).
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

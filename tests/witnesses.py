@@ -1,7 +1,5 @@
 """Planted studies of beam models beside the 3-D FE model."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

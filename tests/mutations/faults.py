@@ -1,7 +1,5 @@
 """Faults to seed into the kernels, each of a kind that has happened in such codes."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

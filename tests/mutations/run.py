@@ -7,8 +7,6 @@ tests. Prints a Markdown table; ends with an error when a fault is caught by not
 fit the source any more.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """The built site as a reader has it: links, what pages ask for, and code blocks that run."""
 
-from __future__ import annotations
-
 import re
 import shlex
 import shutil

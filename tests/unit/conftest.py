@@ -1,7 +1,5 @@
 """Stored studies made up after the data contract: small, quick, of plausible size, not physics."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

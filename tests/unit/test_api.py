@@ -1,7 +1,5 @@
 """A study from Python: the same text, reader, store, checks and errors as the command line."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from functools import reduce

@@ -1,7 +1,5 @@
 """Public docstrings as the site reads them: parameters with types, results and errors."""
 
-from __future__ import annotations
-
 import inspect
 import re
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """A run beyond the range of its contact law keeps its answers, and is marked wherever it shows."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

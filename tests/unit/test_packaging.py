@@ -1,7 +1,5 @@
 """Declarations in several places agree, and `make` says what is missing."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

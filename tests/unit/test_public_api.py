@@ -1,7 +1,5 @@
 """Names, stubs and examples of `import impactlab`."""
 
-from __future__ import annotations
-
 import doctest
 import pydoc
 import re

@@ -1,7 +1,5 @@
 """The table of variables, and where numbers say they come from."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 from datetime import UTC, datetime, timedelta

@@ -1,7 +1,5 @@
 """The core does without the wings: they are imported only where they are asked for."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -5,8 +5,6 @@ intervals, wave front, sections left alone while far from yielding), so beyond r
 differ in their answers.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import replace
 from typing import Any, NamedTuple

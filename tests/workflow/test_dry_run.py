@@ -1,7 +1,5 @@
 """The cost of a study is shown first, and a month of solving needs --force."""
 
-from __future__ import annotations
-
 import pytest
 from command_line import here
 

@@ -1,7 +1,5 @@
 """Whatever is in a study file: a sound study, or errors that name file and key. Nothing else."""
 
-from __future__ import annotations
-
 import re
 import resource
 import signal

@@ -1,7 +1,5 @@
 """Texts of a study stay text: on pages, in tables, in figures, on a terminal; and in results/."""
 
-from __future__ import annotations
-
 import csv
 from html.parser import HTMLParser
 

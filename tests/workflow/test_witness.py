@@ -1,7 +1,5 @@
 """The command `impactlab witness` as users run it, on coarse meshes and for short durations."""
 
-from __future__ import annotations
-
 import signal
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The analyses that apply, and the way through netCDF."""
 
-from __future__ import annotations
-
 import sys
 import tracemalloc
 from collections.abc import Callable

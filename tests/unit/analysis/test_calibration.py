@@ -1,7 +1,5 @@
 """Calibration: posterior, evidence and refusals against closed forms, and coverage."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Distributions and exceedance probabilities of samples whose distributions are known."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Importance sampling: posteriors of known modes, weights and evidence."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.special

@@ -1,7 +1,5 @@
 """Measurements: how they are read, matched with runs, judged, drawn and told."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Regimes of made-up distributions, and jumps of made-up curves."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Responses of all models side by side: in a table, in files, and on a terminal."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 

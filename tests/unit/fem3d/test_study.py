@@ -1,7 +1,5 @@
 """Runs of the 3-D FE model in a study: the same as alone, and a failed one is data."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Data access: missing runs with their reasons, and verdicts."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

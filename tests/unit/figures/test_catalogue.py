@@ -1,7 +1,5 @@
 """Every figure of the catalogue, on every kind of study."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Figures of histories, profiles and grids: what is drawn is what is stored."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Cumulative distributions, and parameters in runs above a limit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import samples

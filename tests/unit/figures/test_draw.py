@@ -1,7 +1,5 @@
 """Figures as files: pictures, data, captions, style and scales."""
 
-from __future__ import annotations
-
 import csv
 import json
 import threading

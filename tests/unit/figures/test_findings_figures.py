@@ -1,7 +1,5 @@
 """The figures of a verification: nothing hidden, nothing overlapping."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Figures of contact laws, and of what shear changes."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

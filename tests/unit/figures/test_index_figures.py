@@ -1,7 +1,5 @@
 """Figures of Sobol indices, distributions and surrogates."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Labels, values and units as papers print them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

@@ -1,7 +1,5 @@
 """Scatters, bars of other methods, convergence of indices and failures of a sample."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The folder of compiled kernels: whose it is, when it is removed, and what happens without one."""
 
-from __future__ import annotations
-
 import os
 import time
 from pathlib import Path

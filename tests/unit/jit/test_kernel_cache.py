@@ -1,7 +1,5 @@
 """Compiled kernels on disk: shared by processes and checkouts, and sound whatever happens."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import shutil

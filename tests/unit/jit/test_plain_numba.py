@@ -1,7 +1,5 @@
 """Without numba's private parts: the same bits, compiled by every process."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

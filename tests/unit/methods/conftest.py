@@ -1,7 +1,5 @@
 """Designs of studies that the tests write."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Rank correlations between the parameters of a sample."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

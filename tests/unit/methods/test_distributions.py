@@ -1,7 +1,5 @@
 """Values and probabilities against closed forms from the standard library."""
 
-from __future__ import annotations
-
 import math
 from statistics import NormalDist
 

@@ -1,7 +1,5 @@
 """The draws of each sampling method."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The samples of every method."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from pathlib import Path
 

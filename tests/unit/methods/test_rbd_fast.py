@@ -1,7 +1,5 @@
 """RBD-FAST on functions with known first orders, and several indices from one hypercube."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Morris' and Latin hypercube draws, bit by bit against SALib's."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A choice among words in a study of impacts: from its section to runs and pilot runs."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from itertools import combinations

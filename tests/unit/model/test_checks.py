@@ -1,7 +1,5 @@
 """The checks that the model classes share, of numbers and of columns."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 

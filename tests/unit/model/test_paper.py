@@ -1,7 +1,5 @@
 """The paper's case against its Tables 2 and 3, as physics.md prints them."""
 
-from __future__ import annotations
-
 import pytest
 
 import impactlab as il

@@ -1,7 +1,5 @@
 """The flat table of parameters leads to every field and back."""
 
-from __future__ import annotations
-
 from dataclasses import fields, is_dataclass
 
 import pytest

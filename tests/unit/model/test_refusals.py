@@ -1,7 +1,5 @@
 """Every field of the model is checked when made, and the message names it."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import FrozenInstanceError, fields, replace
 

@@ -1,7 +1,5 @@
 """Tests of misprints: the printed forms fail, the right ones pass."""
 
-from __future__ import annotations
-
 import pytest
 
 from impactlab.paper.statements import misprints

@@ -1,7 +1,5 @@
 """The page on the paper, with its figures and its tables of judgements and numbers."""
 
-from __future__ import annotations
-
 import csv
 from html.parser import HTMLParser
 from pathlib import Path

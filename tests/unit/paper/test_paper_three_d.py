@@ -1,7 +1,5 @@
 """Statements on the 3-D model, judged on synthetic runs that confirm or refute them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Pages read back as a browser does."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager

@@ -1,7 +1,5 @@
 """The report of a sample, read and clicked through in a browser."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

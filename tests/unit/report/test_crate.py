@@ -1,7 +1,5 @@
 """ro-crate-metadata.json and the metadata of figures: what a folder of results says of itself."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import shutil

@@ -1,7 +1,5 @@
 """The page of sliders, used in a browser: its numbers are those of `impactlab predict`."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Iterator
 from pathlib import Path

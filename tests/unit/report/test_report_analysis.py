@@ -1,7 +1,5 @@
 """Convergence and sensitivity in the report."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The answer that opens a report."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Cautions and notes: each where it matters, and only there."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

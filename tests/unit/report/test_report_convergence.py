@@ -1,7 +1,5 @@
 """Answer, captions, panels and tables of a convergence study say the same of every response."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Pages as a whole, self-contained, well-formed and safe; their figures, and the index."""
 
-from __future__ import annotations
-
 import base64
 from itertools import pairwise
 from pathlib import Path

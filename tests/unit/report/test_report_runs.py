@@ -1,7 +1,5 @@
 """Sections on the runs: inputs, how the runs ended, and results."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The report of a sample: its sections, sentences, tables and files."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The page of a verification: the verdict first, failures never folded away."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from pathlib import Path
 from typing import Any

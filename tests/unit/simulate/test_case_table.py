@@ -1,7 +1,5 @@
 """From what varies to the table of cases: the same as run by run, and as strict."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from importlib import import_module
 

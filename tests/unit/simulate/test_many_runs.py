@@ -1,7 +1,5 @@
 """Many runs are many single ones; what is kept of them, and what is refused."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -3,8 +3,6 @@
 Python's debugging allocator and glibc's MALLOC_PERTURB_ overwrite every block that is freed.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """One run: what comes out, and what is refused."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """A response is missing where the status says why; remarks leave the numbers standing."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Records of the case table for kernels that are called by themselves."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

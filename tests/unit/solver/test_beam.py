@@ -1,7 +1,5 @@
 """The half beam against numpy, its free vibration in closed form, its energy by its fibres."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

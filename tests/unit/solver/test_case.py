@@ -1,7 +1,5 @@
 """The case table holds every parameter, in SI, with names as numbers."""
 
-from __future__ import annotations
-
 import pytest
 
 from impactlab.fem3d.wing import SIZES

@@ -1,7 +1,5 @@
 """The shares of the load on nodes and modes, and the radius of every contact law."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import quad

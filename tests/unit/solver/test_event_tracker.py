@@ -1,7 +1,5 @@
 """Peaks and contact events between the steps."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

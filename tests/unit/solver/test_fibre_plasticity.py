@@ -1,7 +1,5 @@
 """Sections on and off their tangents against bending every section at every step."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The leaps of the modal scheme against its steps: state, energy, bounds, largest deflection."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Compiled kernels: cached, never stale, and the same numbers as plain Python."""
 
-from __future__ import annotations
-
 import importlib.util
 import inspect
 import json

@@ -1,7 +1,5 @@
 """The time loop: its steps, its samples, and runs that fail."""
 
-from __future__ import annotations
-
 import numba
 import numpy as np
 import pytest

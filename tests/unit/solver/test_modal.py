@@ -1,7 +1,5 @@
 """The modal scheme: its step against closed forms, its list of sections, and its stability."""
 
-from __future__ import annotations
-
 import numba
 import numpy as np
 import pytest

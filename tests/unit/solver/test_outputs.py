@@ -1,7 +1,5 @@
 """The bits that runs give, and their names."""
 
-from __future__ import annotations
-
 import pytest
 
 from impactlab.solver import outputs

@@ -1,7 +1,5 @@
 """The rules computed by Newton's method against scipy's eigenvalues and exact integrals."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The answers of a run, read off states made by hand."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -3,8 +3,6 @@
 Its moments are in tests/verification.
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The critical time step: against the eigenvalues of the linear system, and in runs."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Fibres that yield at a rate: their stress, their work, and the static limit."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

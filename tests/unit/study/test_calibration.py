@@ -1,7 +1,5 @@
 """Calibration of a whole study: recovered parameters, contact laws, confirmation, command."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

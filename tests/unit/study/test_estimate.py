@@ -1,7 +1,5 @@
 """The cost of a study is estimated before anything runs, and compared with limits."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace as Namespace

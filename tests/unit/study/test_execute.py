@@ -105,16 +105,12 @@ def test_same_bits_for_any_engine_and_batch_size(tmp_path, engine, monkeypatch):
         assert whole[name].values.tobytes() == split[name].values.tobytes(), name
 
 
-def test_nothing_is_solved_twice(tmp_path, solved):
+def test_a_change_solves_just_what_it_touches(tmp_path, solved):
     first = execute(design(), tmp_path, Engine())
     assert sum(solved) == 6
     again = execute(design(), tmp_path, Engine())
     assert sum(solved) == 6
     assert again.drop_attrs().identical(first.drop_attrs())
-
-
-def test_a_change_solves_just_what_it_touches(tmp_path, solved):
-    execute(design(), tmp_path, Engine())
     solved.clear()
     execute(design(velocities=(0.5, 1.0, 7.0)), tmp_path, Engine())
     assert sum(solved) == 2  # the new velocity at two node counts
@@ -154,12 +150,10 @@ def test_equal_runs_are_solved_once(tmp_path, solved, caplog):
 
 
 def test_failures_are_data(tmp_path):
+    """The status keeps only the reasons of the responses that are asked for."""
     runs = execute(design().assign_coords(duration=1e-4), tmp_path, Engine())
     assert np.isnan(runs["contact_duration"]).all()
     assert (runs["status"] != 0).all()
-
-
-def test_status_keeps_only_the_reasons_of_the_asked_responses(tmp_path):
     short = design(responses=["energy_error"]).assign_coords(duration=1e-4)
     assert (execute(short, tmp_path, Engine())["status"] == 0).all()
 
@@ -215,11 +209,6 @@ def test_dear_runs_come_first_the_dearest_ahead():
     assert np.concatenate([batches.take(2) for _ in range(3)]).tolist() == [0, 2, 4]
 
 
-def test_a_dear_run_is_a_task_of_its_own():
-    taken, _ = simulated(np.full(7, 3e10), 3e8, workers=2)
-    assert [runs.size for runs in taken] == [1] * 7
-
-
 def test_sizes_follow_a_change_of_cost():
     """Runs cost ten times their estimate from the middle on."""
     batches = Batches(np.arange(200_000), np.full(200_000, 3e5), 20)
@@ -231,8 +220,10 @@ def test_sizes_follow_a_change_of_cost():
     assert max(seconds) < 11
 
 
-def test_memory_bounds_a_task():
+def test_memory_and_cost_bound_a_task():
     taken, _ = simulated(np.full(1000, 1.0), 3e8, workers=1, values=executing._VALUES // 10)
     assert max(runs.size for runs in taken) == 10
     taken, _ = simulated(np.full(100_000, 1e-3), 3e8, workers=1, values=1)
     assert max(runs.size for runs in taken) == executing._RUNS
+    taken, _ = simulated(np.full(7, 3e10), 3e8, workers=2)
+    assert [runs.size for runs in taken] == [1] * 7

@@ -54,20 +54,21 @@ def test_a_shard_that_is_damaged_meanwhile_is_an_error(shards):
             columns["force"].compute(scheduler="synchronous")
 
 
-def test_a_study_not_begun(small_design, tmp_path):
-    found = status(small_design(1.0, 2.0), tmp_path / "shards")
+def test_a_study_not_begun_and_one_that_grew(small_design, tmp_path):
+    folder = tmp_path / "shards"
+    found = status(small_design(1.0, 2.0), folder)
     assert (found.runs, found.done, found.failed, found.size) == (4, 0, 0, 0)
     assert found.age is None
     assert found.holder == ""
-    assert not (tmp_path / "shards").exists()
-
-
-def test_a_study_that_grew(small_design, tmp_path):
-    execute(small_design(1.0, 2.0), tmp_path, Engine())
-    found = status(small_design(1.0, 2.0, 3.0, 3.0), tmp_path)
+    assert not folder.exists()
+    execute(small_design(1.0, 2.0), folder, Engine())
+    found = status(small_design(1.0, 2.0, 3.0, 3.0), folder)
     assert (found.runs, found.done, found.failed) == (8, 4, 0)
     assert 0 <= found.age < 60
-    assert found.size == sum(path.stat().st_size for path in tmp_path.rglob("*") if path.is_file())
+    sizes = [path.stat().st_size for path in folder.rglob("*") if path.is_file()]
+    assert found.size == sum(sizes)
+    with locked(folder):
+        assert "process" in status(small_design(1.0), folder).holder
 
 
 def test_runs_without_an_asked_response_failed(small_design, tmp_path):
@@ -75,11 +76,6 @@ def test_runs_without_an_asked_response_failed(small_design, tmp_path):
     design = small_design(1.0, 2.0, **unfinished).assign_coords(duration=1e-4)
     execute(design, tmp_path, Engine())
     assert status(design, tmp_path).failed == 4
-
-
-def test_it_names_who_is_at_work(small_design, tmp_path):
-    with locked(tmp_path):
-        assert "process" in status(small_design(1.0), tmp_path).holder
 
 
 @pytest.mark.parametrize("chunk", [1, 3, 100])
@@ -108,14 +104,10 @@ def test_a_file_that_has_gone_has_no_size(tmp_path):
     assert [each.st_size for each in found] == [3]
 
 
-def test_what_is_asked_for_stays(small_design, tmp_path):
+def test_what_is_asked_for_stays_and_the_rest_is_named_with_the_reason(small_design, tmp_path):
     execute(small_design(1.0, 2.0), tmp_path, Engine())
     assert removable_files(tmp_path, [small_design(1.0, 2.0)]) == {}
     assert removable_files(tmp_path, [small_design(7.0), small_design(2.0)]) == {}
-
-
-def test_what_is_not_is_named_with_the_reason(small_design, tmp_path):
-    execute(small_design(1.0, 2.0), tmp_path, Engine())
     (shard,) = tmp_path.glob("*/*.nc")
     assert removable_files(tmp_path, [small_design(3.0)]) == {shard: "holds no run of the study"}
     assert removable_files(tmp_path, [small_design(1.0, profiles=1)]) == {shard: OTHER_SOLVER}

@@ -1,7 +1,5 @@
 """Whose results are stored: nothing is replaced by another study unasked, nothing stale is left."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Progress bars in a notebook: text on one line, for which no widgets are needed."""
 
-from __future__ import annotations
-
 import builtins
 
 from impactlab.study.progress import items_done

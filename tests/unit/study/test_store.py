@@ -117,17 +117,15 @@ def test_damaged_shards_are_named_and_set_aside(shards, damage, caplog):
 
 def test_a_shard_of_another_folder_is_found_out(shards, tmp_path, caplog):
     *_, path = written(shards, cases(0.5))
-    other = Shards(tmp_path, OUTPUT, "another version")
-    other.folder.mkdir()
-    shutil.copy(path, other.folder)
-    assert list(other.read()) == []
-    assert "damaged" in caplog.text
-
-
-def test_other_forms_are_not_seen(shards, tmp_path):
-    written(shards, cases(0.5))
-    other = Shards(tmp_path, OutputSpec(samples=0, profiles=False), VERSION)
-    assert list(other.read()) == []
+    for form in ((OUTPUT, "another version"), (OutputSpec(samples=0, profiles=False), VERSION)):
+        other = Shards(tmp_path, *form)
+        assert list(other.read()) == []
+        assert "damaged" not in caplog.text
+        other.folder.mkdir()
+        shutil.copy(path, other.folder)
+        assert list(other.read()) == []
+        assert "damaged" in caplog.text
+        caplog.clear()
 
 
 def test_one_shard_takes_the_place_of_all_small_ones(shards, monkeypatch, tmp_path):
@@ -208,6 +206,9 @@ def test_answers_find_the_runs_of_their_keys():
     requested, runs = index.find(keys(2, 999, 256))
     assert requested.tolist() == [True, False, True]
     assert runs.tolist() == [3, 0]
+    beyond_the_last, none = RunIndex(keys(1, 2)).find(keys(3))
+    assert not beyond_the_last.any()
+    assert none.size == 0
     index.done[runs] = True
     assert np.flatnonzero(~index.done).tolist() == [1, 2]
 
@@ -221,12 +222,6 @@ def test_the_first_of_equal_runs_stands_for_all():
     assert index.spread(index.done.copy()).tolist() == [False, True, False, True, False]
     values = np.array([[7.0, 70.0], [3.0, 30.0], [0, 0], [0, 0], [0, 0]])
     assert index.spread(values)[:, 1].tolist() == [70.0, 30.0, 70.0, 30.0, 70.0]
-
-
-def test_keys_beyond_the_last_are_not_taken_for_it():
-    requested, runs = RunIndex(keys(1, 2)).find(keys(3))
-    assert not requested.any()
-    assert runs.size == 0
 
 
 HOLD = """
@@ -270,6 +265,8 @@ def test_a_killed_process_leaves_the_folder_free(tmp_path, other, caplog):
 
 def test_steps_within_a_longer_work_leave_the_folder_held(tmp_path, caplog):
     caplog.set_level("INFO")
+    assert holder(tmp_path / "none") == ""
+    assert not (tmp_path / "none").exists()
     with locked(tmp_path):
         for _ in range(2):
             with locked(tmp_path):
@@ -286,11 +283,6 @@ def test_a_disk_too_full_for_a_note_is_left_to_what_is_more_than_one(tmp_path, m
     monkeypatch.setattr(type(tmp_path), "write_text", full)
     with locked(tmp_path):
         assert holder(tmp_path) == "another process"
-
-
-def test_nobody_works_in_an_unknown_folder(tmp_path):
-    assert holder(tmp_path / "none") == ""
-    assert not (tmp_path / "none").exists()
 
 
 @pytest.mark.parametrize("owner", [b"\xff\x00" * 9999, b"", b"\x1b[31m" + b"[" * 500, None])

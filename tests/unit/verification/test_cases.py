@@ -1,7 +1,5 @@
 """Timoshenko's example in SI units."""
 
-from __future__ import annotations
-
 import pytest
 
 from impactlab.verification.cases import timoshenko_impact

@@ -1,7 +1,5 @@
 """Comparisons, checks and their outcomes."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Verdicts on manufactured sequences along each axis, and what must never pass unnoticed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The uncertainty of each grid holds the limit, and is infinite where nothing can be said."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The fit over four or more grids: exact data, numpy's own fits, and data with a known scatter."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial

@@ -1,7 +1,5 @@
 """Errors against the most points, the points needed, and the verdicts on them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

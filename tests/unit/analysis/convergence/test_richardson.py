@@ -1,7 +1,5 @@
 """Published tables, manufactured sequences of each class, and exact recovery."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """Functions with known indices, and samples of them as runs datasets."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

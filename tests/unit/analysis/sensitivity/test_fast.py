@@ -1,7 +1,5 @@
 """Extended FAST against analytic indices, SALib's own numbers, and its floor."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Delta, PAWN and regression of a linear Gaussian model, whose answers are known."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

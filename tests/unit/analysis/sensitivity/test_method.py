@@ -1,7 +1,5 @@
 """Resampling by counts: every row as likely as any other, whatever is held at a time."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

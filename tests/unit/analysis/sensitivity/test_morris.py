@@ -1,7 +1,5 @@
 """Elementary effects of functions whose effects are known."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

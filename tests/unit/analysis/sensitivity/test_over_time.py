@@ -1,7 +1,5 @@
 """Indices over time: known ones, those of scalars, failed runs, and memory."""
 
-from __future__ import annotations
-
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Analytic indices of Ishigami and Sobol-G, intervals and their coverage, and the guards."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any
 

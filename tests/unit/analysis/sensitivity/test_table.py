@@ -1,7 +1,5 @@
 """The tidy table of every index, as CSV and as netCDF."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Verdicts on made-up cases, and the policies for failed runs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -4,8 +4,6 @@ The model is additive, so that its indices are known: the Sobol indices in close
 PAWN by quadrature over the distributions of its parts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any

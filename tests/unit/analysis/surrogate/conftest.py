@@ -1,7 +1,5 @@
 """Samples drawn from distributions, and answered by closed forms in place of the solver."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Polynomial chaos: its terms, their values, and its Sobol indices."""
 
-from __future__ import annotations
-
 from itertools import product
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Samples as points of the unit cube, and fits: exact for polynomials, sparse, repeatable."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Surrogates of whole samples: Ishigami's indices, and what must not pass in silence."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Polynomials of each distribution: orthonormal, those of textbooks, and straight at the ends."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """surrogate.nc: what comes back is what was fitted, and refuses what it does not know."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Errors that grow outwards, and the interval of Q²: measured on functions that are known."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """One coarse case, and its decks."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import decks

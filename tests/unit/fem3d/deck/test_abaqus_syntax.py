@@ -1,7 +1,5 @@
 """Abaqus decks keep to the documented syntax, and the checker sees when one does not."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import abaqus_syntax

@@ -1,7 +1,5 @@
 """CalculiX reads the decks, and finds Hertz's impact with one."""
 
-from __future__ import annotations
-
 import re
 import signal
 

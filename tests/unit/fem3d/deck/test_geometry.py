@@ -1,7 +1,5 @@
 """The mesh of a deck, read back, is the mesh."""
 
-from __future__ import annotations
-
 import decks
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Plasticity: what the cards say, and what CalculiX makes of them in a bar pulled and pushed."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import calculix

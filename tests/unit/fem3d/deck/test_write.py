@@ -1,7 +1,5 @@
 """The text of a deck besides the mesh, and the cases that are refused."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import decks

@@ -1,7 +1,5 @@
 """Beam models beside a planted witness: figures, and what the effects come to."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import witnesses

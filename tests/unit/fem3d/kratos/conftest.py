@@ -1,7 +1,5 @@
 """The paper's case at 1 mm about the contact, on a mesh that is coarse elsewhere."""
 
-from __future__ import annotations
-
 import pytest
 
 from impactlab.fem3d.solver import Mesh, quarter_mesh

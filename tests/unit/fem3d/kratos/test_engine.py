@@ -1,7 +1,5 @@
 """Kratos is imported late, and its absence is reported in one line."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

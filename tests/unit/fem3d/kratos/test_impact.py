@@ -1,7 +1,5 @@
 """Two programs, one mesh: the 3-D FE model and Kratos agree."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Kratos gets the mesh of the 3-D FE model, and steps that do not converge are cut in half."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A body of hexahedra in a test's hands: it moves the nodes, and gets the forces that answer."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Whole impacts against closed forms: Hertz's on a large block, Timoshenko's beam in modes."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Impulses integrated over faces: overlaps closed, momentum kept, work counted."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

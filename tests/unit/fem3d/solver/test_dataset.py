@@ -1,7 +1,5 @@
 """A run as a dataset: names, units and shapes as the beam models have them."""
 
-from __future__ import annotations
-
 import numba
 import numpy as np
 import pytest

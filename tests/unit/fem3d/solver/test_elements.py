@@ -1,7 +1,5 @@
 """Elements: the patch test, rigid motions, rank, bending, twist, and constant volume."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """A march: momentum and energy kept, and every reason to stop."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numba

@@ -1,7 +1,5 @@
 """Radial return against closed forms: one step, and cycles with hardening."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

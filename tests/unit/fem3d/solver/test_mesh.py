@@ -1,7 +1,5 @@
 """The quarter model's mesh: graded lines; whole, conforming, matched, and of the bodies' volume."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Contacts and peaks between steps, and the reach of a planted plastic strain along the surface."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

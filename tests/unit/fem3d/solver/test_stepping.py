@@ -1,7 +1,5 @@
 """The assembly of forces, and Saint-Venant's impact of two bars, small enough for plain Python."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

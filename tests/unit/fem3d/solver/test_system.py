@@ -1,7 +1,5 @@
 """Masses, the largest stable step, and the same bits for any number of threads."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numba

@@ -1,7 +1,5 @@
 """The lift of the axis: its data, an even pressure in closed form, which body yields."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The laws of Hertz and Stronge as kernels, against the closed forms and their own limits."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The compliance of the bodies in series with the contact law, and where its numbers come from."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

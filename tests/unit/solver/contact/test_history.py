@@ -1,7 +1,5 @@
 """The contact's memory: loading, unloading, reloading, and where the work goes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import quad

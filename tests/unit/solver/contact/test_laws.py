@@ -1,7 +1,5 @@
 """Every contact law through the same tests; its flaws are those that the registry has."""
 
-from __future__ import annotations
-
 import re
 from importlib import import_module
 from pathlib import Path

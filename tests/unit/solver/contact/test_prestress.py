@@ -1,7 +1,5 @@
 """A contact on metal under stress: first yield, the data of the fit, energy."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A law's number leads to its function."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

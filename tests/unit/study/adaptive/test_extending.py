@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import json
 import math
 
@@ -81,44 +79,46 @@ def shrinking():
     return analysed
 
 
-def test_the_sample_grows_until_the_widest_interval_is_narrow_enough(sample, solve, shrinking):
-    runs = extend_sample(sample(interval=0.1), solve, shrinking)
-    assert solve.runs == [256, 512, 1024]  # N (D + 2)
-    assert runs.attrs["base_samples"] == 256
-    assert runs.attrs["until_reached"] == 1
-    assert runs.attrs["until_reason"] == (
-        "number_of_contacts has no indices (constant: it is still); "
-        "the widest interval is that of the first-order index of contact_duration to velocity, "
-        "± 0.1, within 0.1"
-    )
+CONSTANT = "number_of_contacts has no indices (constant: it is still); "
+WIDEST = "first-order index of contact_duration to velocity, ± 0.1"
 
 
-def test_it_stops_before_there_are_more_runs_than_allowed(sample, solve, shrinking):
-    runs = extend_sample(sample(interval=0.01, runs=2047), solve, shrinking)
-    assert solve.runs == [256, 512, 1024]
-    assert runs.attrs["until_reached"] == 0
-    expected = "± 0.1, above 0.01, but twice as many runs are more than 2,047"
-    assert runs.attrs["until_reason"].endswith(expected)
-
-
-def test_as_many_runs_as_allowed_are_made(sample, solve, shrinking):
-    extend_sample(sample(interval=0.01, runs=2048), solve, shrinking)
-    assert solve.runs == [256, 512, 1024, 2048]
-
-
-def test_only_the_responses_it_is_asked_of_count(sample, solve, shrinking):
-    runs = extend_sample(sample(interval=0.1, responses=["peak_force"]), solve, shrinking)
-    assert solve.runs == [256]
-    assert runs.attrs["until_reason"].startswith("the widest")
-    assert "peak_force" in runs.attrs["until_reason"]
-
-
-def test_responses_without_indices_alone_ask_for_no_runs(sample, solve, shrinking):
-    runs = extend_sample(sample(responses=["number_of_contacts"]), solve, shrinking)
-    assert solve.runs == [256]
-    assert runs.attrs["until_reached"] == 0
-    expected = "; no response has indices that more runs could narrow"
-    assert runs.attrs["until_reason"].endswith(expected)
+@pytest.mark.parametrize(
+    ("until", "counts", "reached", "reason"),
+    [
+        (
+            {"interval": 0.1},
+            [256, 512, 1024],
+            1,
+            f"{CONSTANT}the widest interval is that of the {WIDEST}, within 0.1",
+        ),
+        (
+            {"interval": 0.01, "runs": 2047},
+            [256, 512, 1024],
+            0,
+            f"{WIDEST}, above 0.01, but twice as many runs are more than 2,047",
+        ),
+        ({"interval": 0.01, "runs": 2048}, [256, 512, 1024, 2048], 0, "are more than 2,048"),
+        ({"interval": 0.1, "responses": ["peak_force"]}, [256], 1, "± 0.1, within 0.1"),
+        (
+            {"responses": ["number_of_contacts"]},
+            [256],
+            0,
+            f"{CONSTANT}no response has indices that more runs could narrow",
+        ),
+    ],
+)
+def test_the_sample_grows_until_the_widest_interval_is_narrow_enough(
+    sample, solve, shrinking, until, counts, reached, reason
+):
+    """Or the next step has more runs than are allowed; N (D + 2) runs each time."""
+    runs = extend_sample(sample(**until), solve, shrinking)
+    assert solve.runs == counts
+    assert runs.attrs["base_samples"] == counts[-1] // 4
+    assert runs.attrs["until_reached"] == reached
+    assert runs.attrs["until_reason"].endswith(reason)
+    named = "contact_duration" in runs.attrs["until_reason"]
+    assert named == ("responses" not in until)
 
 
 def test_the_analysis_of_the_package_decides(sample, solve, tmp_path):
@@ -163,29 +163,21 @@ def widest(index, of):
 STILL = "still has no indices (constant: does not vary); "
 
 
-def test_the_widest_is_named(analysis):
-    found = largest_interval(analysis, ["force", "still", "time"])
-    assert found == (0.5, f"{STILL}{widest('first-order', 'force to a')}, ± 0.5")
-
-
-def test_only_what_is_asked_counts(analysis):
-    found = largest_interval(analysis, ["time"])
-    assert found == (0.4, f"{widest('first-order', 'time to b')}, ± 0.4")
-
-
-def test_total_order_counts_too(analysis):
-    analysis["first_order_interval"] *= 0
-    found = largest_interval(analysis, ["time", "force"])
-    assert found == (0.3, f"{widest('total-order', 'time to a')}, ± 0.3")
-
-
-def test_without_any_index_there_is_none(analysis):
-    half_width, words = largest_interval(analysis, ["still"])
-    assert math.isnan(half_width)
-    assert words == f"{STILL}no response has indices that more runs could narrow"
-
-
-def test_a_gap_among_numbers_is_not_narrow(analysis):
-    analysis["total_order_interval"][2, 1] = np.nan
-    found = largest_interval(analysis, ["force", "time"])
-    assert found == (math.inf, f"{widest('total-order', 'time to b')}, ± inf")
+@pytest.mark.parametrize(
+    ("change", "responses", "half_width", "words"),
+    [
+        (None, "force still time", 0.5, f"{STILL}{widest('first-order', 'force to a')}, ± 0.5"),
+        (None, "time", 0.4, f"{widest('first-order', 'time to b')}, ± 0.4"),
+        ("no first", "time force", 0.3, f"{widest('total-order', 'time to a')}, ± 0.3"),
+        ("gap", "force time", math.inf, f"{widest('total-order', 'time to b')}, ± inf"),
+        (None, "still", math.nan, f"{STILL}no response has indices that more runs could narrow"),
+    ],
+)
+def test_the_widest_is_named(analysis, change, responses, half_width, words):
+    """A gap among numbers is not narrow; without any index there is no half-width."""
+    if change == "no first":
+        analysis["first_order_interval"] *= 0
+    if change == "gap":
+        analysis["total_order_interval"][2, 1] = np.nan
+    expected = pytest.approx(half_width, rel=0, abs=0, nan_ok=True), words
+    assert largest_interval(analysis, responses.split()) == expected

@@ -1,7 +1,5 @@
 """Study files for the tests to change and to damage."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

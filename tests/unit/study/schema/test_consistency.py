@@ -1,7 +1,5 @@
 """Contradictions between the sections of a study of impacts."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

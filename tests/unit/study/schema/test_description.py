@@ -1,7 +1,5 @@
 """Descriptions of study files for a workflow: what a study is, not which words its file has."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Distributions and fixed values of sampled parameters."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

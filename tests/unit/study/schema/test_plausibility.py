@@ -1,7 +1,5 @@
 """Impossible values are refused by name; implausible ones give a warning."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Study files of every kind."""
 
-from __future__ import annotations
-
 import hashlib
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The section `sampling`: its methods, groups and `until`."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

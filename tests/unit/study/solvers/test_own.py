@@ -1,7 +1,5 @@
 """Functions of the user: solved, kept and analysed like ours, and never taken for one another."""
 
-from __future__ import annotations
-
 import functools
 import math
 
@@ -32,10 +30,6 @@ def work(run):
 
 def product(a, b=2.0):
     return a * b
-
-
-def two(a, b):
-    return {"sum": a + b, "difference": a - b}
 
 
 SAMPLE = il.Sobol(
@@ -146,13 +140,6 @@ def test_a_model_of_ones_own_has_its_known_indices():
     assert indices.total_order.values == pytest.approx(4 / 7, abs=0.05)
 
 
-def test_a_model_may_give_several_responses():
-    study = il.Study(title="Two", function=two, responses=["sum", "difference"], sampling=PLANE)
-    runs = study.run(workers=1)
-    assert runs["sum"].values == pytest.approx(runs.a.values + runs.b.values)
-    assert runs.difference.values == pytest.approx(runs.a.values - runs.b.values)
-
-
 def units(x, load_2, time):
     return {"energy": load_2 * x, "plastic_strain_of_it": time}
 
@@ -171,6 +158,8 @@ def test_a_model_has_labels_and_units_of_its_own(method):
     assert [runs[name].attrs["long_name"] for name in ends] == ["x", "load 2", "time"]
     assert runs.x.min() >= 0.001
     assert runs.x.max() <= 0.002
+    assert (runs.energy == runs.load_2 * runs.x).all()
+    assert (runs.plastic_strain_of_it == runs.time).all()
     assert labels.display(runs.plastic_strain_of_it).symbol == "ms"
     assert not access.failed(runs).any()
     assert access.count(runs) == (128 if method == "pawn" else 8)
@@ -206,16 +195,10 @@ def test_other_names_are_as_good_as_any(name):
     call = eval(f"lambda a, {name}: a * {name}")
     study = il.Study(title="Names", function=call, responses=["out"], sampling=sampling)
     runs = study.run(workers=1)
+    assert runs.out.dims == (name, "a")
     assert (runs.out == runs.a * runs[name]).all()
     assert runs[name].attrs == {"long_name": name, "units": "1"}
     assert il.answers(runs, study.analyse())[0].endswith("out 1 to 4.")
-
-
-def test_grids_take_functions_too():
-    sampling = il.Grid(parameters={"a": [1, 2, 3], "b": [0.5, 1.5]})
-    runs = il.Study(title="Grid", function=product, sampling=sampling).run(workers=1)
-    assert runs.value.dims == ("a", "b")
-    assert (runs.value == runs.a * runs.b).all()
 
 
 def test_growing_samples_take_functions_too():

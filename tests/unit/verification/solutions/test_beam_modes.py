@@ -1,7 +1,5 @@
 """The modes of both theories against matrix beams, sums, and the start of a step response."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Closed forms of bending against integrals over the depth, hand calculation and fibres."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

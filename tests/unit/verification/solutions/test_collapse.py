@@ -1,7 +1,5 @@
 """Load and deflection beyond yield against the closed form, integrals and balances of energy."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

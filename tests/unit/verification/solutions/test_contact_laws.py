@@ -1,7 +1,5 @@
 """The laws of the reference against closed forms, and what they are fitted to."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Hertz's closed forms against the equation of motion integrated in time."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

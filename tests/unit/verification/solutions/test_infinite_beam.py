@@ -1,7 +1,5 @@
 """The infinite beam against the modal sum of a long one, before the supports' echo."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

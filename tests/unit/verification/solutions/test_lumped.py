@@ -1,7 +1,5 @@
 """Sphere on a lumped mass: closed forms, balances, and the march of one mode."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The modal series of both theories: convergence, balances, limits, and other solutions."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

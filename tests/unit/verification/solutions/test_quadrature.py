@@ -1,7 +1,5 @@
 """Integration rules against the integrals of powers and the tabled points."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

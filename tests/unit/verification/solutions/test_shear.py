@@ -1,7 +1,5 @@
 """Closed forms of shear against integrals, the exact frequency equation and small numbers."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

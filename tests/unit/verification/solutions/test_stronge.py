@@ -1,7 +1,5 @@
 """The Stronge law's closed forms against integrals of the force, over depth and over time."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 
