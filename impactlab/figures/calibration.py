@@ -10,8 +10,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.analysis.calibration import SILENT
 from impactlab.analysis.measurements import COVERAGE
+from impactlab.analysis.posterior import SILENT
 from impactlab.figures import labels, scales, style
 from impactlab.solver.contact import CONTACT_LAWS
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.calibration import CONTRADICTED, FEWEST, NEGLIGIBLE, SILENT, STRONG
 from impactlab.analysis.measurements import COVERAGE
+from impactlab.analysis.posterior import CONTRADICTED, FEWEST, NEGLIGIBLE, SILENT, STRONG
 from impactlab.figures import labels
 from impactlab.figures.calibration import calibration
 from impactlab.figures.draw import save

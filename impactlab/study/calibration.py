@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis import surrogate
-from impactlab.analysis.calibration import calibrated
 from impactlab.analysis.measurements import Measurement
+from impactlab.analysis.posterior import calibrated
 from impactlab.analysis.responses import usable
 from impactlab.analysis.surrogate.stored import Surrogate
 from impactlab.files import read_netcdf, write_netcdf
@@ -49,7 +49,7 @@ def calibrate(
     """Solve a study's sample, calibrate it on measurements, confirm by runs of the solver.
 
     laws: contact laws that are weighed against each other, by default those that the sample draws;
-    the sample is solved under each. model_error: see analysis.calibration.calibrated, whose dataset
+    the sample is solved under each. model_error: see analysis.posterior.calibrated, whose dataset
     is written to calibration.nc in `folder`. It has besides confirmed_error (measurement), the root
     mean squared difference of surrogate and solver at draws of the posterior, confirmed_missing
     (measurement), how many of these gave no answer, and confirmed_runs.

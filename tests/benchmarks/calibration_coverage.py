@@ -17,8 +17,8 @@ import scipy.stats
 import xarray as xr
 
 from impactlab.analysis import surrogate
-from impactlab.analysis.calibration import Model
 from impactlab.analysis.importance import posterior
+from impactlab.analysis.likelihood import Likelihood
 from impactlab.analysis.measurements import Measurement
 from impactlab.analysis.surrogate.stored import Surrogate
 
@@ -54,8 +54,8 @@ def rank(function, model, seed, places):
         for v in start + places
         for y in [float(function(truth, v)) + rng.normal(0, error)]
     ]
-    matched = Model.of(model, data, {}, 0.0)
-    found = posterior(matched.log_likelihood, 1, seed, last=4000)
+    matched = Likelihood(model, data, {}, 0.0)
+    found = posterior(matched.log, 1, seed, last=4000)
     return float(found.weights[matched.values(found.points)[:, 0] < truth].sum())
 
 

@@ -5,8 +5,8 @@ import pytest
 import scipy.special
 import scipy.stats
 
-from impactlab.analysis.calibration import FEWEST
 from impactlab.analysis.importance import modes, posterior
+from impactlab.analysis.posterior import FEWEST
 
 PLACES = np.array([0.2, 0.8])
 

@@ -9,9 +9,10 @@ import pytest
 import scipy.stats
 import xarray as xr
 
-from impactlab.analysis.calibration import FEWEST, Model, calibrated
 from impactlab.analysis.importance import posterior
+from impactlab.analysis.likelihood import Likelihood
 from impactlab.analysis.measurements import Measurement
+from impactlab.analysis.posterior import FEWEST, calibrated
 from impactlab.analysis.surrogate.stored import Surrogate
 
 RANGE = {"a": (0.0, 2.0), "b": (10.0, 30.0), "velocity": (1.0, 5.0)}
@@ -107,8 +108,8 @@ def test_intervals_cover_parameters_drawn_from_the_prior():
             measured(one.quantity, one.value + each, u)
             for one, each, u in zip(pair(theta), noise, (0.2, 0.15), strict=True)
         ]
-        model = Model.of(surrogate, data, {}, 0.0)
-        found = posterior(model.log_likelihood, 2, 1, last=2000)
+        model = Likelihood(surrogate, data, {}, 0.0)
+        found = posterior(model.log, 2, 1, last=2000)
         ranks.append((model.values(found.points) < theta).T @ found.weights)
     inside = (np.abs(np.array(ranks) - 0.5) < 0.4).mean(axis=0)
     spread = np.sqrt(0.8 * 0.2 / 80)
