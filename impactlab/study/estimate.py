@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 from distributed.system import MEMORY_LIMIT
 
-from impactlab.methods.grid import Grid
 from impactlab.methods.sampling import RandomSample
 from impactlab.methods.sobol import Sobol
 from impactlab.model.cost import A_SECOND, memory, work
@@ -234,20 +233,12 @@ def _largest_run(
     study: ImpactStudy, model: Any, sample: Mapping[str, Array], cost: Array
 ) -> dict[str, Value]:
     """Return the largest run: that of the sample, each parameter taken to its costliest end."""
-    sampling = study.sampling
+    bounds = study.sampling.bounds()
     values = {name: column[int(np.argmax(cost))].item() for name, column in sample.items()}
     for name in values:
-        distribution = sampling.varied[name]
-        if isinstance(sampling, Grid):
-            ends = (
-                list(distribution)
-                if isinstance(distribution[0], str)
-                else [min(distribution), max(distribution)]
-            )
-        elif name in sampling.words:
-            ends = list(distribution.values)
-        else:
-            ends = distribution.quantile(np.array([_TAIL, 1 - _TAIL])).tolist()
+        ends = list(bounds.get(name, ()))
+        if not ends:
+            ends = study.sampling.varied[name].quantile(np.array([_TAIL, 1 - _TAIL])).tolist()
         columns = {key: [value] * len(ends) for key, value in values.items()} | {name: ends}
         values[name] = ends[int(np.argmax(model.work(_cases(study, model, columns))))]
     return values

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any
@@ -46,10 +46,7 @@ def read_any(path: str | Path) -> AnyStudy | Verification:
 
 def read_study(path: str | Path) -> AnyStudy:
     """Read a study of runs. Raises StudyError as `read_any`, and for a file of checks."""
-    declared = read_any(path)
-    if isinstance(declared, Verification):
-        raise _wrong_kind(declared.path, "lists checks and has no runs", "verify")
-    return declared
+    return _of_runs(read_source(path))
 
 
 def read_impacts(path: str | Path) -> ImpactStudy:
@@ -65,11 +62,10 @@ def of_impacts(study: AnyStudy) -> ImpactStudy:
     return study
 
 
-def study_of_text(name: str, text: str, path: Path | None = None) -> AnyStudy:
-    """Read a study of runs from the text of NAME.yaml; see `read_any`. path: that errors name."""
-    path = path or Path(f"{name}.yaml")
-    source = Source(name, path, text, read_mapping(text, str(path)))
-    return _of_runs(source)
+def study_of_text(name: str, text: str) -> AnyStudy:
+    """Read a study of runs from the text of NAME.yaml; see `read_any`."""
+    path = Path(f"{name}.yaml")
+    return _of_runs(Source(name, path, text, read_mapping(text, str(path))))
 
 
 def study_of_content(name: str, content: dict[str, Any], path: Path) -> AnyStudy:
@@ -186,38 +182,35 @@ _NOT_KNOWN = "holds a Python function, which is in no file: build the study in P
 
 def _function_study(source: Source) -> FunctionStudy:
     name, path = source.data.get("function"), str(source.path)
+    kind: type[_FunctionFile]
     if isinstance(name, str) and "@" in name:
-        return _own_function_study(source, name)
-    if not isinstance(name, str) or name not in FUNCTIONS:
+        kind, (parameters, responses) = _PythonFunctionFile, _python_function(source, name)
+    elif isinstance(name, str) and name in FUNCTIONS:
+        function, kind, responses = FUNCTIONS[name], _FunctionFile, {"value": "1"}
+        parameters = {
+            key: Parameter(key, "1", f"{key} of the {function.title}", ())
+            for key in function.ranges
+        }
+    else:
         raise StudyError(Problem(path, "function", unknown("function", name, FUNCTIONS), name))
-    title = FUNCTIONS[name].title
-    parameters = {
-        key: Parameter(key, "1", f"{key} of the {title}", ()) for key in FUNCTIONS[name].ranges
+    file = validated(kind, source.data, path, parameters, responses)
+    reason = file.sampling.no_surrogate if kind is _PythonFunctionFile else ""
+    if reason and file.analysis.failed_runs == "impute":
+        raise StudyError(Problem(path, "analysis.failed_runs", f"{reason}: set failed_runs: fail"))
+    labels = {
+        key: {"long_name": parameter.long_name, "units": parameter.units}
+        for key, parameter in parameters.items()
     }
-    file = validated(_FunctionFile, source.data, path, parameters, {"value": "1"})
-    return _of_function(source, file, parameters, ("value",))
-
-
-def _of_function(
-    source: Source,
-    file: _FunctionFile,
-    parameters: Mapping[str, Parameter],
-    responses: tuple[str, ...],
-) -> FunctionStudy:
-    """Return the study. Raises StudyError where its limits have no meaning."""
-    fields: dict[str, Any] = dict(file) | {"responses": responses}
-    fields["labels"] = {
-        name: {"long_name": parameter.long_name, "units": parameter.units}
-        for name, parameter in parameters.items()
-    }
+    fields: dict[str, Any] = {"responses": tuple(responses)} | dict(file) | {"labels": labels}
     fields["analyses"] = tuple(ANALYSES)
     study = FunctionStudy(name=source.name, path=source.path, text=source.text, **fields)
-    if problems := [Problem(str(source.path), *reason) for reason in limit_reasons(study)]:
+    if problems := [Problem(path, *reason) for reason in limit_reasons(study)]:
         raise StudyError(*problems)
     return study
 
 
-def _own_function_study(source: Source, key: str) -> FunctionStudy:
+def _python_function(source: Source, key: str) -> tuple[dict[str, Parameter], dict[str, str]]:
+    """Return the parameters of a Python function, and its responses with their units."""
     from impactlab.study.solvers.own import KNOWN
 
     path = str(source.path)
@@ -232,21 +225,16 @@ def _own_function_study(source: Source, key: str) -> FunctionStudy:
     responses = [str(name) for name in names] if isinstance(names, list) else ["value"]
     places = [(name, f"sampling.parameters.{name}") for name in entries]
     places += [(name, f"responses.{index}") for index, name in enumerate(responses)]
-    for name, where in places:
+    for name, place in places:
         if reason := _name_problem(name) or (
             name in entries and name in responses and "names a parameter and a response"
         ):
-            raise StudyError(Problem(path, where, f"{reason}: choose another name", name))
+            raise StudyError(Problem(path, place, f"{reason}: choose another name", name))
     parameters = {
         name: Parameter(name, _units(entry), name.replace("_", " "), (), any_word=True)
         for name, entry in entries.items()
     }
-    units = {name: KNOWN[key].unit(name) for name in responses}
-    file = validated(_OwnFunctionFile, source.data, path, parameters, units)
-    if (reason := file.sampling.no_surrogate) and file.analysis.failed_runs == "impute":
-        reason += ": set failed_runs: fail"
-        raise StudyError(Problem(path, "analysis.failed_runs", reason))
-    return _of_function(source, file, parameters, file.responses)
+    return parameters, {name: KNOWN[key].unit(name) for name in responses}
 
 
 _TAKEN = {"run", "response", "parameter"}
@@ -280,7 +268,7 @@ class _FunctionFile(Heading):
     analysis: Analysis = Field(default_factory=Analysis)
 
 
-class _OwnFunctionFile(_FunctionFile):
+class _PythonFunctionFile(_FunctionFile):
     responses: Names = ("value",)
 
 
