@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -16,12 +16,11 @@ from impactlab.cli.interrupt import stop_kept
 from impactlab.cli.options import given, new_folder
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from impactlab.fem3d.plan import Plan
     from impactlab.fem3d.solver.march import Progress
 
-_UNITS = {"velocity": "m s-1", "element-size": "m", "patch": "m", "duration": "s"}
+_UNITS = {"velocity": "m s-1", "contact": "", "element-size": "m", "patch": "m", "duration": "s"}
+"""Units of the options that belong in the folder's name, in its order; a law has none."""
 
 
 def witness(
@@ -80,52 +79,48 @@ def witness(
     computed until then.
     """
     from impactlab.fem3d.deck import FLAVOURS
-    from impactlab.fem3d.plan import case_of, planned, print_plan
-    from impactlab.study.schema.readers import read_impacts
+    from impactlab.fem3d.plan import print_plan
     from impactlab.study.steps import results_folder
 
     if deck and deck not in FLAVOURS:
         raise ValueError(f"--deck {deck}: must be one of {', '.join(FLAVOURS)}")
     if elastic and not deck:
         raise ValueError("--elastic: applies to a deck only; select one with --deck")
-    options = {
-        "velocity": velocity,
-        "contact": contact,
-        "element-size": element_size,
-        "patch": patch,
-        "duration": duration,
-    }
-    texts = {name: text for name, text in options.items() if text}
+    options = velocity, contact, element_size, patch, duration
+    texts = {name: text for name, text in zip(_UNITS, options, strict=True) if text}
+    plan = _planned(study, texts)
+    # So that no answers to other options are overwritten.
+    parts = [re.sub(r"[^\w.]+", "-", f"{name}-{text}") for name, text in texts.items()]
+    folder = output or results_folder(plan.case.name) / "_".join(["witness", *parts])
+    problem = "" if deck and plan.mesh else plan.problem(workers)
+    if problem and not (dry_run or force):
+        raise ValueError(problem)
+    print_plan(plan, None if deck else workers, problem)
+    if deck and not dry_run:
+        _write_deck(plan, deck, folder, plastic=not elastic)
+    elif not dry_run:
+        _solve(plan, folder, workers)
+
+
+def _planned(study: Path | None, texts: Mapping[str, str]) -> Plan:
+    """Return the plan of the study's base, or of the paper's case, with the options given."""
+    from impactlab.fem3d.plan import case_of, planned
+    from impactlab.study.schema.readers import read_impacts
+
     numbers = {
         name.replace("-", "_"): given(f"--{name}", texts[name], units)
         for name, units in _UNITS.items()
-        if name in texts
+        if units and name in texts
     }
     speed = numbers.pop("velocity", None)
-    case = case_of(read_impacts(study) if study else None, velocity=speed, contact=contact or None)
+    impacts = read_impacts(study) if study else None
+    case = case_of(impacts, velocity=speed, contact=texts.get("contact"))
     if case.held:
         values = ", ".join(f"{name} = {value}" for name, value in case.held.items())
         logging.getLogger("impactlab").info(
             "%s varies parameters of which this command takes one value: %s", case.file, values
         )
-    plan = planned(case, **numbers)
-    # So that no answers to other options are overwritten.
-    parts = [re.sub(r"[^\w.]+", "-", f"{name}-{text}") for name, text in texts.items()]
-    folder = output or results_folder(case.name) / "_".join(["witness", *parts])
-    problem = "" if deck and plan.mesh else plan.problem(workers)
-    if problem and not (dry_run or force):
-        raise ValueError(problem)
-    print_plan(plan, None if deck else workers, problem)
-    if dry_run:
-        return
-    if deck:
-        _write_deck(plan, deck, folder, plastic=not elastic)
-        return
-    from impactlab.fem3d.comparison import compare, print_comparison
-
-    solid, responses, folder = compare(plan, folder, workers=workers, watched=_watched())
-    print_comparison(responses, solid)
-    _end(solid, folder)
+    return planned(case, **numbers)
 
 
 def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> None:
@@ -156,8 +151,12 @@ def _watched() -> Iterator[Progress]:
         yield progress
 
 
-def _end(solid: xr.Dataset, folder: Path) -> None:
-    """Print where the answers are; exit with 130 if interrupted, with 1 if the run failed."""
+def _solve(plan: Plan, folder: Path, workers: int) -> None:
+    """Solve and compare; exit with 130 if interrupted, with 1 if the 3-D run failed."""
+    from impactlab.fem3d.comparison import compare, print_comparison
+
+    solid, responses, folder = compare(plan, folder, workers=workers, watched=_watched())
+    print_comparison(responses, solid)
     stopped = str(solid.attrs.get("stopped", ""))
     log = logging.getLogger("impactlab")
     if stopped.startswith("interrupted"):
