@@ -25,7 +25,7 @@ from impactlab.report.page import leading
 from impactlab.report.results import FINDINGS
 from impactlab.study import steps
 from impactlab.study.schema.readers import read_verification
-from impactlab.verification.stored import unpacked
+from impactlab.verification.outcomes import unpacked
 
 DOCS = Path(__file__).parent
 ROOT = DOCS.parent

@@ -228,7 +228,7 @@ def verify(
     from impactlab.study import steps
     from impactlab.study.ownership import check_unclaimed, study_file
     from impactlab.study.schema.readers import read_verification
-    from impactlab.verification.stored import unpacked
+    from impactlab.verification.outcomes import unpacked
 
     if study.suffix == ".nc":
         findings = read_netcdf(study, "findings")

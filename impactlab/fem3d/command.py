@@ -16,7 +16,7 @@ from impactlab.cli.interrupt import stop_kept
 from impactlab.cli.options import given, new_folder
 
 if TYPE_CHECKING:
-    from impactlab.fem3d.plan import Plan
+    from impactlab.fem3d.plan import RunPlan
     from impactlab.fem3d.solver.march import Progress
 
 _UNITS = {"velocity": "m s-1", "contact": "", "element-size": "m", "patch": "m", "duration": "s"}
@@ -102,7 +102,7 @@ def witness(
         _solve(plan, folder, workers)
 
 
-def _planned(study: Path | None, texts: Mapping[str, str]) -> Plan:
+def _planned(study: Path | None, texts: Mapping[str, str]) -> RunPlan:
     """Return the plan of the study's base, or of the paper's case, with the options given."""
     from impactlab.fem3d.plan import case_of, planned
     from impactlab.study.schema.readers import read_impacts
@@ -123,7 +123,7 @@ def _planned(study: Path | None, texts: Mapping[str, str]) -> Plan:
     return planned(case, **numbers)
 
 
-def _write_deck(plan: Plan, flavour: str, folder: Path, *, plastic: bool) -> None:
+def _write_deck(plan: RunPlan, flavour: str, folder: Path, *, plastic: bool) -> None:
     from impactlab.fem3d.comparison import check_writable
     from impactlab.fem3d.deck import FLAVOURS, write_deck
 
@@ -151,7 +151,7 @@ def _watched() -> Iterator[Progress]:
         yield progress
 
 
-def _solve(plan: Plan, folder: Path, workers: int) -> None:
+def _solve(plan: RunPlan, folder: Path, workers: int) -> None:
     """Solve and compare; exit with 130 if interrupted, with 1 if the 3-D run failed."""
     from impactlab.fem3d.comparison import compare, print_comparison
 

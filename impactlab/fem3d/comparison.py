@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from impactlab.fem3d.figures.run import draw_witness
-from impactlab.fem3d.plan import MODELS, Plan
+from impactlab.fem3d.plan import MODELS, RunPlan
 from impactlab.fem3d.solver import solve_on
 from impactlab.fem3d.solver.march import Progress
 from impactlab.fem3d.wing import SOLID, UNLIKE
@@ -33,7 +33,7 @@ _HEAD = ("response", "units", "model", "value", "difference_percent", "missing_b
 
 
 def compare(
-    plan: Plan, folder: Path, *, workers: int, watched: AbstractContextManager[Progress]
+    plan: RunPlan, folder: Path, *, workers: int, watched: AbstractContextManager[Progress]
 ) -> tuple[xr.Dataset, xr.Dataset, Path]:
     """Solve a planned case by the 3-D FE model and the beam models; write and draw the answers.
 

@@ -122,7 +122,7 @@ def to_dataset(run: Run) -> xr.Dataset:
 
 
 @dataclass(frozen=True)
-class Engine:
+class Kratos:
     """core: the module KratosMultiphysics. analysis: its class of structural analyses."""
 
     core: Any
@@ -133,7 +133,7 @@ class Engine:
         return self.core.KratosGlobals.GetVariable(name)
 
 
-def engine(threads: int) -> Engine:
+def engine(threads: int) -> Kratos:
     """Return Kratos on `threads` threads, silent except for warnings.
 
     Raises KratosMissingError, which says what to install.
@@ -151,7 +151,7 @@ def engine(threads: int) -> Engine:
             f"Kratos Multiphysics is not complete here ({error}): pip install 'impactlab[kratos]'"
         ) from error
     core.ParallelUtilities.SetNumThreads(threads)
-    return Engine(core, analysis)
+    return Kratos(core, analysis)
 
 
 @dataclass
@@ -162,7 +162,7 @@ class Run:
     Newton's, in each.
     """
 
-    engine: Engine
+    engine: Kratos
     mesh: Mesh
     impact: Impact
     _: KW_ONLY
@@ -314,7 +314,7 @@ def settings(duration: float, time_step: float, penalty: float) -> str:
     return json.dumps({"problem_data": problem, "solver_settings": solver, "processes": processes})
 
 
-def fill(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
+def fill(engine: Kratos, part: Any, mesh: Mesh, impact: Impact) -> None:
     """Put the mesh into the empty model part `part`, which must know its variables.
 
     Kratos counts from 1: its node i + 1 is the mesh's node i.
@@ -340,7 +340,7 @@ def fill(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
         first += len(quads)
 
 
-def _steel(engine: Engine, part: Any, number: int, material: Material, density: float) -> Any:
+def _steel(engine: Kratos, part: Any, number: int, material: Material, density: float) -> Any:
     """Return Kratos' properties of a material; density in kg/m3."""
     refuse_rate(material)
     if material.kinematic_hardening_modulus > 0.0:
@@ -366,7 +366,7 @@ def _steel(engine: Engine, part: Any, number: int, material: Material, density: 
     return result
 
 
-def constrain(engine: Engine, part: Any, mesh: Mesh, impact: Impact) -> None:
+def constrain(engine: Kratos, part: Any, mesh: Mesh, impact: Impact) -> None:
     """Fix nodes on planes of symmetry and supports; launch the sphere and let it fall.
 
     The sphere alone has gravity, and its velocity now and in the step before.

@@ -73,7 +73,7 @@ _FEWEST = 2.0  # elements over the contact's radius at least, of a chosen size
 
 
 @dataclass(frozen=True)
-class Plan:
+class RunPlan:
     """One 3-D run. mesh: None where it does not fit memory. Lengths in m, times in s.
 
     first_contact: NaN where it outlasts the study. beam_seconds: time that the beam models take.
@@ -123,7 +123,7 @@ def planned(
     element_size: float | None = None,
     patch: float | None = None,
     duration: float | None = None,
-) -> Plan:
+) -> RunPlan:
     """Return the plan of a run; arguments that are None are chosen.
 
     element_size: the finest of 1, 2 or 5 times a power of ten that keeps within USUAL_TIME.
@@ -148,7 +148,7 @@ def planned(
     grid = replace(case.discretisation, scheme="leapfrog")
     beams = case_table(case.impact, grid, duration=simulated, varied={"beam_model": MODELS})
     beside = float(cost.work(beams).sum() / cost.A_SECOND)
-    return Plan(case, size, half, simulated, first, usual, beside, solid, mesh)
+    return RunPlan(case, size, half, simulated, first, usual, beside, solid, mesh)
 
 
 def cost_of(
@@ -189,7 +189,7 @@ def _usual_size(impact: Impact, patch: float | None, duration: float) -> float:
     return usual
 
 
-def print_plan(plan: Plan, workers: int | None, problem: str) -> None:
+def print_plan(plan: RunPlan, workers: int | None, problem: str) -> None:
     """Print what is solved and what it costs, one line each, and the problem, if any.
 
     workers: None for a deck, which another program solves.

@@ -18,7 +18,7 @@ from impactlab.figures import data, findings, record, style
 from impactlab.figures.catalogue import applicable
 from impactlab.files import identity, replaced
 from impactlab.verification.finding import gravest_first
-from impactlab.verification.stored import unpacked
+from impactlab.verification.outcomes import unpacked
 
 FORMATS = ("svg", "png")
 OVERVIEW = "overview"

@@ -21,6 +21,6 @@ def paper(
 
     A missing study leaves its figures out and its statements unjudged.
     """
-    from impactlab.paper.page import write_paper
+    from impactlab.paper.claims import write_paper
 
     write_paper(folders, output)

@@ -30,7 +30,7 @@ from impactlab.report.sensitivity import (
 )
 from impactlab.verdicts import TOLERANCE
 from impactlab.verification.finding import gravest_first
-from impactlab.verification.stored import unpacked
+from impactlab.verification.outcomes import unpacked
 
 LINES = 5
 _LIMITS = 2  # lines that limits may take of these

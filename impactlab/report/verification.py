@@ -15,7 +15,7 @@ from impactlab.report.answer import entries
 from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
 from impactlab.verification.comparisons import Comparison
 from impactlab.verification.finding import Outcome, gravest_first
-from impactlab.verification.stored import unpacked
+from impactlab.verification.outcomes import unpacked
 
 _SHORT = 12  # longest table of passed comparisons that is not folded
 _HEAD = ["Quantity", "Case", "Ours", "Independent value", "Difference", "Tolerance", "Verdict"]

@@ -321,7 +321,7 @@ def check(verification: Verification) -> xr.Dataset:
     from impactlab.study.progress import items_done
     from impactlab.variables import provenance
     from impactlab.verification.catalogue import CATALOGUE
-    from impactlab.verification.stored import packed
+    from impactlab.verification.outcomes import packed
 
     outcomes: list[Outcome] = []
     with items_done(len(verification.checks), 0, "checks") as advance:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from impactlab.verification import (
     beam_limits,
-    contact,
     energy,
     local_contact,
     modal_series,
@@ -12,10 +11,11 @@ from impactlab.verification import (
     schemes,
     strain_rate,
     symmetry,
+    waveless,
 )
 from impactlab.verification.finding import Check
 
-_CONTACT = contact, local_contact
+_CONTACT = waveless, local_contact
 _BEAM = modal_series, beam_limits, plasticity, strain_rate
 _WHOLE = schemes, symmetry, energy
 CATALOGUE: dict[str, Check] = {

@@ -23,7 +23,7 @@ from impactlab.solver.outputs import OUTSIDE_CONTACT_LAW
 from impactlab.variables import RESPONSES, described
 from impactlab.verification.comparisons import Comparison, Comparisons
 from impactlab.verification.finding import Curve, Finding, Outcome, Panel
-from impactlab.verification.stored import packed
+from impactlab.verification.outcomes import packed
 
 Study = tuple[xr.Dataset, xr.Dataset]
 

@@ -16,7 +16,7 @@ from impactlab.files import write_netcdf
 from impactlab.variables import provenance
 from impactlab.verification.comparisons import Comparisons
 from impactlab.verification.finding import Finding, Outcome
-from impactlab.verification.stored import packed
+from impactlab.verification.outcomes import packed
 
 ROOT = Path(__file__).parents[2]
 

@@ -1,4 +1,4 @@
-"""Figures of a study with 3-D runs: all models against velocity, and what makes them differ.
+"""Figures of a study with 3-D runs: models against velocity, their differences, convergence.
 
 Each model is taken on its finest grid, with its uncertainty.
 """
@@ -13,10 +13,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.transforms import ScaledTranslation
 
-from impactlab.fem3d.figures.convergence import element_size_convergence
-from impactlab.fem3d.wing import SOLID
+from impactlab.fem3d.wing import MODEL, SIZES, SOLID
 from impactlab.figures import access, labels, record, scales, style
 from impactlab.figures.access import known, usable
+from impactlab.figures.convergence import CAPTION, Refined, draw, enough
 from impactlab.figures.labels import display
 from impactlab.figures.panel import name_places
 from impactlab.types import Floats
@@ -302,6 +302,43 @@ def _finding(runs: xr.Dataset, analysis: xr.Dataset) -> str:
             listed = labels.listing([f"{part} by the {effect}" for part, effect in pairs])
             sentences.append(f"The {labels.response(name)} changes by {listed}; together {total}.")
     return " ".join(sentences)
+
+
+def _refined(runs: xr.Dataset) -> Refined:
+    dim = next((name for name in SIZES if name in runs.dims), SIZES[0])
+    return Refined(MODEL.axis, dim, ("velocity", "beam_yield_stress"))
+
+
+def _solid(dataset: xr.Dataset) -> xr.Dataset:
+    """Return the runs of the 3-D model, which do not depend on the nodes."""
+    if "beam_model" in dataset.dims:
+        dataset = dataset.sel(beam_model=SOLID)
+    return dataset.isel(nodes=0) if "nodes" in dataset.dims else dataset
+
+
+@record.figure(
+    MODEL.axis_title,
+    "Three-dimensional model alone; elements beyond the contact keep their largest size. "
+    f"{CAPTION}",
+    lambda runs, analysis: (
+        _refined(runs).applies(runs, analysis) and SOLID in runs["beam_model"].values
+    ),
+    lambda runs, analysis: (
+        enough(runs, analysis),
+        *_refined(runs).sentences(_solid(runs), _solid(analysis))[1:],
+    ),
+)
+def element_size_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw against the size of the elements, or over the radius that the contact is to have."""
+    axis = _refined(runs)
+    values = runs[axis.dim].values
+    if axis.dim == "element_size":
+        unit = display(runs[axis.dim])
+        sizes, label = unit(values), labels.axis("element size", unit.symbol)
+    else:
+        sizes = np.round(100.0 / values, 1)
+        label = labels.axis("element size over expected contact radius", "%")
+    return draw(_solid(runs), _solid(analysis), axis, sizes, label)
 
 
 FIGURES = {figure.name: figure for figure in (witness, witness_parts, element_size_convergence)}

@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import math
 
+from impactlab.fem3d.solver.compiler import Array, compiled, inlined
 from impactlab.fem3d.solver.hexahedron import (
     F,
     Shape,
@@ -46,7 +47,6 @@ from impactlab.fem3d.solver.hexahedron import (
     times,
     volume,
 )
-from impactlab.fem3d.solver.jit import Array, compiled, inlined
 from impactlab.fem3d.solver.material import ALONG, PAST_ROWS, PEEQ, STRESS_ROWS, Metal, advance
 
 Four = tuple[Vector, Vector, Vector, Vector]

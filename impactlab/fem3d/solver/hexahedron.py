@@ -22,7 +22,7 @@ Source of the mean gradient: D. P. Flanagan and T. Belytschko, Int. J. Numer. Me
 
 from __future__ import annotations
 
-from impactlab.fem3d.solver.jit import Array, inlined
+from impactlab.fem3d.solver.compiler import Array, inlined
 
 W = 16  # lanes of a block
 X, V = 0, 24  # first rows of positions and velocities in `s`: node 0's x, y, z, node 1's ...

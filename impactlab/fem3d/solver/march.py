@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.fem3d.solver.contact import PARTS
 from impactlab.fem3d.solver.elements import DISSIPATED, HOURGLASS_WORK, WORK
 from impactlab.fem3d.solver.estimates import largest_patch
+from impactlab.fem3d.solver.impulses import PARTS
 from impactlab.fem3d.solver.system import System, corner_volumes, critical_step
 from impactlab.model.impact import Impact
 from impactlab.types import Floats

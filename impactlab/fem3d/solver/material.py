@@ -14,8 +14,8 @@ from __future__ import annotations
 
 import math
 
+from impactlab.fem3d.solver.compiler import Array, inlined
 from impactlab.fem3d.solver.hexahedron import Tensor, Vector, W, load, store
-from impactlab.fem3d.solver.jit import Array, inlined
 
 Six = tuple[float, float, float, float, float, float]
 Metal = tuple[float, float, float, float, float, float, float]

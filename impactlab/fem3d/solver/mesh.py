@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from impactlab.fem3d.solver.contact import bulges
 from impactlab.fem3d.solver.estimates import checked_patch, checked_size, uniform
+from impactlab.fem3d.solver.impulses import bulges
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact
 from impactlab.types import Floats
@@ -53,7 +53,7 @@ class Mesh:
     SPHERE. full: (e,), whether fully integrated. pairs: (p, 2) nodes (of the sphere, of the beam)
     with the same x and y, in a square, y fastest. gaps: (p,) initial distances in m. rim: (p,),
     pairs on the border of the matched patch. bulge: (f, points) in m of the sphere's faces, see
-    contact.bulges. normals: (p, 3) of the sphere, see contact.close_gaps. symmetry_x, symmetry_y:
+    impulses.bulges. normals: (p, 3) of the sphere, see impulses.close_gaps. symmetry_x, symmetry_y:
     nodes that keep their x (y). support: nodes that keep their z. axis_node: on the beam's axis at
     mid-span. element_size: of the patch, in m. patch: half the side of the square of matched nodes,
     in m.

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.fem3d.solver.jit import COMPILER
+from impactlab.fem3d.solver.compiler import COMPILER
 from impactlab.fem3d.solver.march import Energies, History, March, Progress
 from impactlab.fem3d.solver.mesh import Mesh, check_mesh, quarter_mesh
 from impactlab.fem3d.solver.responses import fields, plastic_responses, responses

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from impactlab.fem3d.solver.contact import RULE, close_gaps
+from impactlab.fem3d.solver.compiler import Array, compiled, inlined
 from impactlab.fem3d.solver.elements import FULL_ROWS, ROWS, add_forces, blocks_of
 from impactlab.fem3d.solver.hexahedron import SCRATCH, Vector, W, cross, dot
-from impactlab.fem3d.solver.jit import Array, compiled, inlined
+from impactlab.fem3d.solver.impulses import RULE, close_gaps
 from impactlab.fem3d.solver.material import PAST_ROWS, STRESS_ROWS, Metal
 from impactlab.fem3d.solver.mesh import BEAM, NEIGHBOURS, SPHERE, Mesh, nodal_masses
 from impactlab.model.impact import Impact, Material

@@ -11,10 +11,10 @@ from collections.abc import Callable
 import numpy as np
 
 from impactlab.model.impact import Beam, paper_impact
-from impactlab.paper.statements.convergence import READINGS_OF_P
+from impactlab.paper.statements.resolution import READINGS_OF_P
 from impactlab.paper.statements.statement import (
+    Assessment,
     Data,
-    Judgement,
     Number,
     Ruling,
     Subject,
@@ -46,7 +46,7 @@ EQUAL = 1e-9  # relative difference within which two forces agree
         "the contact ω² ≤ 16 (EI)q/(ρA dx⁴) + k (1/(ρA dx) + 1/m)"
     ),
 )
-def time_step(case: str, data: Data, limit: Callable[[Beam, int], float]) -> Judgement:
+def time_step(case: str, data: Data, limit: Callable[[Beam, int], float]) -> Assessment:
     """Judge a step, given as a function of the beam and the number of nodes."""
     beam, nodes, steps = paper_impact().beam, 601, 20
     dt = 0.99 * limit(beam, nodes)  # the printed rule says “less than”
@@ -79,7 +79,7 @@ def time_step(case: str, data: Data, limit: Callable[[Beam, int], float]) -> Jud
     cases=(("as printed, − M_xx", -1.0), ("as in Eq. 4, + M_xx", 1.0)),
     holds="ρA w_tt = F + M_xx, as in its own Eq. 4",
 )
-def moment_sign(case: str, data: Data, sign: float) -> Judgement:
+def moment_sign(case: str, data: Data, sign: float) -> Assessment:
     """Judge the sign of the moment's second derivative."""
     beam, nodes, steps = paper_impact().beam, 601, 20
     dt = 0.99 * explicit_beam.bending_step(beam, nodes)
@@ -109,7 +109,7 @@ def moment_sign(case: str, data: Data, sign: float) -> Judgement:
     ),
     holds="w_tt at n, both times",
 )
-def acceleration_time(case: str, data: Data, acceleration: Callable[[float], float]) -> Judgement:
+def acceleration_time(case: str, data: Data, acceleration: Callable[[float], float]) -> Assessment:
     """Judge what is taken for the acceleration of a step at t = 0, with omega = 1."""
     errors = []
     for dt in (1e-2, 5e-3):
@@ -137,7 +137,7 @@ def acceleration_time(case: str, data: Data, acceleration: Callable[[float], flo
     ),
     holds="R_e = √(3 F_m/(4 E*)) (R*/δ_y)^(3/4), that is R_e/R* = √(F_m/F_y)",
 )
-def unloading_radius(case: str, data: Data, outer: float, inner: float) -> Judgement:
+def unloading_radius(case: str, data: Data, outer: float, inner: float) -> Assessment:
     """Judge R_e = (3 F_m/(4 E*))^outer (R*/delta_y)^inner, in SI numbers."""
     law = stronge_impact(paper_impact())
     ratio = law.effective_radius / law.yield_indentation
@@ -165,7 +165,7 @@ def unloading_radius(case: str, data: Data, outer: float, inner: float) -> Judge
     cases=(("as printed", 1.0), ("with δ in the place of δ_y", 0.0)),
     holds="F = (4/3) E* √R* δ^(3/2)",
 )
-def elastic_phase(case: str, data: Data, begins: float) -> Judgement:
+def elastic_phase(case: str, data: Data, begins: float) -> Assessment:
     """Judge the expression; begins: its depth over delta_y where the contact begins."""
     law = stronge_impact(paper_impact())
     stiffness = hertz.stiffness(law.effective_modulus, law.effective_radius)
@@ -185,7 +185,7 @@ def elastic_phase(case: str, data: Data, begins: float) -> Judgement:
     cases=(("density 7800 kg/m³, 27.8 × 60 × 780 mm", 10.929),),
     holds="10.148 kg; a beam of 840 mm would have 10.929 kg",
 )
-def beam_mass(case: str, data: Data, printed: float) -> Judgement:
+def beam_mass(case: str, data: Data, printed: float) -> Assessment:
     """Judge the `printed` mass in kg."""
     beam = paper_impact().beam
     per_length = beam.material.density * beam.width * beam.depth
@@ -211,7 +211,7 @@ def beam_mass(case: str, data: Data, printed: float) -> Judgement:
     cases=(("the often quoted 84 δ_y", 84.0), ("by continuity", 0.5 * (U_PLASTIC + 1.0))),
     holds="continuity: ln(u) = 3 (2.8 − 1.1), δ/δ_y = 82.511",
 )
-def fully_plastic(case: str, data: Data, depth: float) -> Judgement:
+def fully_plastic(case: str, data: Data, depth: float) -> Assessment:
     """Judge a depth over the yield indentation at which the phase would begin."""
     u = 2.0 * depth - 1.0
     jump = HARDNESS / CONSTRAINT / (1.0 + math.log(u) / (3.0 * CONSTRAINT)) - 1.0
@@ -230,7 +230,7 @@ def fully_plastic(case: str, data: Data, depth: float) -> Judgement:
     cases=READINGS_OF_P,
     holds="2 Lobatto points are 3 times too stiff; with 3 the section yields all at once",
 )
-def few_points(case: str, data: Data, rule: str, points: int, literal: bool) -> Judgement:
+def few_points(case: str, data: Data, rule: str, points: int, literal: bool) -> Assessment:
     """Judge an integration rule by its stiffness and its plastic moment."""
     beam = paper_impact().beam
     # At a thousand times that of first yield every fibre but one on the axis has yielded.
@@ -256,7 +256,7 @@ def few_points(case: str, data: Data, rule: str, points: int, literal: bool) -> 
     cases=(("Stronge's law",),),
     holds="the coefficient is above 1 for small δ_m/δ_y: the law itself creates energy there",
 )
-def restitution(case: str, data: Data) -> Judgement:
+def restitution(case: str, data: Data) -> Assessment:
     """Judge the law by the works of its loading and unloading."""
     law = stronge_impact(paper_impact())
     ratios = np.geomspace(1.0, 300.0, 4001)[1:]
@@ -265,11 +265,11 @@ def restitution(case: str, data: Data) -> Judgement:
     above = restitution > 1.0
     largest = Number("largest restitution", float(restitution.max()), "1")
     if not above.any():
-        return Judgement(case, (largest,), Ruling.HOLDS, "It is at most 1.")
+        return Assessment(case, (largest,), Ruling.HOLDS, "It is at most 1.")
     end = float(ratios[above].max())
     numbers = (largest, Number("δ_m/δ_y up to which it is above 1", end, "1", end * 0.0015))
     why = "The law creates energy in shallow contacts; the energy audit of the runs counts it."
-    return Judgement(case, numbers, Ruling.FAILS, why)
+    return Assessment(case, numbers, Ruling.FAILS, why)
 
 
 @statement(
@@ -280,7 +280,7 @@ def restitution(case: str, data: Data) -> Judgement:
     studies=("fig05",),
     holds="an impact has several sub-impacts: state which contact is meant (here the first)",
 )
-def sub_impacts(case: str, data: Data) -> Judgement:
+def sub_impacts(case: str, data: Data) -> Assessment:
     """Judge the largest number of contacts."""
     runs = runs_of(data, "fig05")
     where = {"contact": "stronge"} if "contact" in runs.dims else {}

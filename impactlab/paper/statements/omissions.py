@@ -15,8 +15,8 @@ from impactlab.paper.statements.statement import (
     BEAM,
     PRINTED_DIFFERENCE,
     VELOCITY,
+    Assessment,
     Data,
-    Judgement,
     Number,
     UnknownError,
     finest_grid,
@@ -54,7 +54,7 @@ _LIMITS = (
     cases=_CASES,
     studies=(EFFECTS_STUDY,),
 )
-def shear(case: str, data: Data, velocity: float, limit: float) -> Judgement:
+def shear(case: str, data: Data, velocity: float, limit: float) -> Assessment:
     """Judge what shear and rotary inertia change."""
     runs = runs_of(data, EFFECTS_STUDY)
     gaps = []
@@ -67,7 +67,7 @@ def shear(case: str, data: Data, velocity: float, limit: float) -> Judgement:
     return _judge_changes(case, gaps, limit)
 
 
-def _judge_changes(case: str, gaps: Sequence[Number], limit: float) -> Judgement:
+def _judge_changes(case: str, gaps: Sequence[Number], limit: float) -> Assessment:
     """Judge changes of responses against the limit of a reading."""
     small = all(gap.within(limit) for gap in gaps)
     worst = max(gaps, key=lambda gap: abs(gap.value))
@@ -87,7 +87,7 @@ def _judge_changes(case: str, gaps: Sequence[Number], limit: float) -> Judgement
     cases=_CASES,
     studies=(EFFECTS_STUDY,),
 )
-def strain_rate(case: str, data: Data, velocity: float, limit: float) -> Judgement:
+def strain_rate(case: str, data: Data, velocity: float, limit: float) -> Assessment:
     """Judge what a yield stress that depends on the strain rate changes."""
     runs = runs_of(data, EFFECTS_STUDY)
     if "beam_rate_coefficient" not in runs.dims:
@@ -117,7 +117,7 @@ def strain_rate(case: str, data: Data, velocity: float, limit: float) -> Judgeme
     cases=(("this project's two models",),),
     studies=(MESHES_STUDY,),
 )
-def run_time(case: str, data: Data) -> Judgement:
+def run_time(case: str, data: Data) -> Assessment:
     """Judge the processor times of the beam and of the 3-D model."""
     runs = runs_of(data, MESHES_STUDY)
     if "processor_time" not in runs or "element_size" not in runs.dims:

@@ -11,9 +11,9 @@ import xarray as xr
 from impactlab.fem3d.wing import SOLID
 from impactlab.model.impact import paper_impact
 from impactlab.paper.statements.statement import (
+    Assessment,
     Case,
     Data,
-    Judgement,
     Number,
     Ruling,
     Statement,
@@ -53,7 +53,7 @@ _HOW_FAR = (
     cases=AWAY,
     studies=(LATE, EARLY),
 )
-def elastic_to_5(case: str, data: Data, study: str, response: str, literal: bool) -> Judgement:
+def elastic_to_5(case: str, data: Data, study: str, response: str, literal: bool) -> Assessment:
     """Judge the largest strain up to 5 m/s."""
     largest = _largest_to_5(data, study, response)
     elastic = "No fibre there yields on any grid."
@@ -87,7 +87,9 @@ def _largest_to_5(data: Data, study: str, response: str) -> Number:
     ),
     studies=(LATE, EARLY, SOLID_STUDY),
 )
-def peak_under_impact(case: str, data: Data, study: str, response: str, literal: bool) -> Judgement:
+def peak_under_impact(
+    case: str, data: Data, study: str, response: str, literal: bool
+) -> Assessment:
     """Judge whether any fibre, or element about the contact, yields up to 5 m/s."""
     if study == SOLID_STUDY:
         return _solid_peak(case, data)
@@ -96,7 +98,7 @@ def peak_under_impact(case: str, data: Data, study: str, response: str, literal:
     return judged(case, (largest,), largest.low > 0.0, "Some fibre yields.", none, literal=literal)
 
 
-def _solid_peak(case: str, data: Data) -> Judgement:
+def _solid_peak(case: str, data: Data) -> Assessment:
     """Judge the 3-D model's runs up to 5 m/s, on every mesh."""
     runs = runs_of(data, SOLID_STUDY)
     low = [float(v) for v in runs["velocity"].values if v <= 5.0]
@@ -149,7 +151,7 @@ def _judge_limit(
     place: float | tuple[str, str],
     literal: bool,
     below: bool,
-) -> Judgement:
+) -> Assessment:
     """Judge the strain below the limit, or above it; unknown where U encloses the limit."""
     if isinstance(place, tuple):
         study, response = place
@@ -165,7 +167,7 @@ def _judge_limit(
             "The limit lies within the uncertainty: a perfectly plastic hinge has no limit in the "
             "nodes. Runs with the steel's hardening, which the paper does not give, would decide."
         )
-        return Judgement(case, (strain,), Ruling.UNKNOWN, why)
+        return Assessment(case, (strain,), Ruling.UNKNOWN, why)
     side = "below" if under else "above"
     why = f"{100 * strain.value:.2g} % lies {side} the limit by more than its uncertainty."
     return judged(case, (strain,), under is below, why, literal=literal)
@@ -219,7 +221,9 @@ above_limit_at_15 = _strain_statement(
     cases=AWAY,
     studies=(LATE, EARLY),
 )
-def plasticity_begins(case: str, data: Data, study: str, response: str, literal: bool) -> Judgement:
+def plasticity_begins(
+    case: str, data: Data, study: str, response: str, literal: bool
+) -> Assessment:
     """Judge the velocities that enclose the first yield farther than a depth from the impact."""
     curve = response_curve(data, study, response)
     first = int(np.argmax([number.value > 0 for number in curve.values()]))

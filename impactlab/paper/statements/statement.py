@@ -1,4 +1,4 @@
-"""A statement of the paper, its judgements, and the numbers from solved studies that they rest on.
+"""A statement of the paper, its assessments, and the numbers from solved studies that they rest on.
 
 Every number has an uncertainty from the convergence in the mesh.
 """
@@ -87,7 +87,7 @@ class Number:
 
 
 @dataclass(frozen=True)
-class Judgement:
+class Assessment:
     """The verdict on one statement in one case, which may be a reading of the paper's words."""
 
     case: str
@@ -111,7 +111,7 @@ class Statement:
     """
 
     name: str
-    judge_case: Callable[..., Judgement]
+    judge_case: Callable[..., Assessment]
     text: str
     test: str
     cases: tuple[Case, ...] | Callable[[Data], Iterable[Case]]
@@ -119,17 +119,17 @@ class Statement:
     holds: str = ""
     kind: Subject = Subject.STATEMENT
 
-    def judge(self, data: Data) -> Iterator[Judgement]:
-        """Yield one judgement per case: UNKNOWN, with the reason, where a run is missing."""
+    def judge(self, data: Data) -> Iterator[Assessment]:
+        """Yield one assessment per case: UNKNOWN, with the reason, where a run is missing."""
         for case, *rest in self.cases(data) if callable(self.cases) else self.cases:
             try:
-                judgement = self.judge_case(case, data, *rest)
+                assessment = self.judge_case(case, data, *rest)
             except UnknownError as reason:
-                judgement = Judgement(case, (), Ruling.UNKNOWN, str(reason))
-            yield judgement
+                assessment = Assessment(case, (), Ruling.UNKNOWN, str(reason))
+            yield assessment
 
 
-def statement(**fields: Any) -> Callable[[Callable[..., Judgement]], Statement]:
+def statement(**fields: Any) -> Callable[[Callable[..., Assessment]], Statement]:
     """Return a decorator that makes a function the `Statement` of its name; fields: the others."""
     return lambda function: Statement(function.__name__, function, **fields)
 
@@ -142,14 +142,14 @@ def judged(
     otherwise: str = "",
     *,
     literal: bool = True,
-) -> Judgement:
-    """Return the judgement of a clear test; literal: the paper states this very case.
+) -> Assessment:
+    """Return the assessment of a clear test; literal: the paper states this very case.
 
     otherwise: what is said where the statement does not stand, if not the same.
     """
     if not stands:
-        return Judgement(case, numbers, Ruling.FAILS, otherwise or why)
-    return Judgement(case, numbers, Ruling.HOLDS if literal else Ruling.READING, why)
+        return Assessment(case, numbers, Ruling.FAILS, otherwise or why)
+    return Assessment(case, numbers, Ruling.HOLDS if literal else Ruling.READING, why)
 
 
 def runs_of(data: Data, study: str) -> xr.Dataset:

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.convergence.judgement import numerical_uncertainty
-from impactlab.fem3d.convergence import ELEMENT_SIZE
+from impactlab.fem3d.element_size import ELEMENT_SIZE
 from impactlab.fem3d.wing import SIZES, SOLID
 from impactlab.figures import labels
 from impactlab.model.impact import paper_impact
@@ -16,9 +16,9 @@ from impactlab.paper.statements.statement import (
     BEAM,
     PRINTED_DIFFERENCE,
     VELOCITY,
+    Assessment,
     Case,
     Data,
-    Judgement,
     Number,
     UnknownError,
     finest_grid,
@@ -165,7 +165,7 @@ def _impulses(data: Data) -> tuple[Number, ...]:
     ),
     studies=(FIRST_CONTACT, MESHES),
 )
-def force_history(case: str, data: Data, measure: str) -> Judgement:
+def force_history(case: str, data: Data, measure: str) -> Assessment:
     """Judge a measure of the difference at the paper's velocity."""
     if measure == "peak":
         numbers = _gap(data, VELOCITY, "peak_force")
@@ -192,7 +192,7 @@ def force_history(case: str, data: Data, measure: str) -> Judgement:
     ),
     studies=(FIRST_CONTACT,),
 )
-def deflection_history(case: str, data: Data, limit: float) -> Judgement:
+def deflection_history(case: str, data: Data, limit: float) -> Assessment:
     """Judge the histories of the deflection at mid-span."""
     gap = _distance(data, "midspan_deflection", _largest)
     stands = gap.within(limit)
@@ -217,7 +217,7 @@ def _velocities(data: Data) -> Iterator[Case]:
     cases=_velocities,
     studies=(FIRST_CONTACT, MESHES),
 )
-def duration_of_witness(case: str, data: Data, velocity: float) -> Judgement:
+def duration_of_witness(case: str, data: Data, velocity: float) -> Assessment:
     """Judge the durations of the first contact."""
     numbers = _gap(data, velocity, "contact_duration")
     gap = numbers[-1]
@@ -263,7 +263,7 @@ def _zone_extent(data: Data, variable: str, factor: float) -> Number:
     cases=(*((place, *zone) for place, zone in _ZONE.items()), ("the contact's radius", "", 1.0)),
     studies=(FIRST_CONTACT, MESHES),
 )
-def plastic_zone_extent(case: str, data: Data, variable: str, factor: float) -> Judgement:
+def plastic_zone_extent(case: str, data: Data, variable: str, factor: float) -> Assessment:
     """Judge a variable of the runs; factor: from it to the extent from the centre."""
     reach = _zone_extent(data, variable, factor) if variable else _contact_radius(data, 1.0)
     gap = abs(reach.value - PRINTED_EXTENT)
@@ -287,7 +287,7 @@ def plastic_zone_extent(case: str, data: Data, variable: str, factor: float) -> 
     ),
     studies=(FIRST_CONTACT, MESHES),
 )
-def plastic_zone_place(case: str, data: Data, factor: float | None) -> Judgement:
+def plastic_zone_place(case: str, data: Data, factor: float | None) -> Assessment:
     """Judge the zone beside the contact's radius; factor: of R delta under the root."""
     if factor is None:
         runs, _ = _refined_runs(data)

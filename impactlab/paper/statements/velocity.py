@@ -9,8 +9,8 @@ from operator import itemgetter
 
 from impactlab.model.impact import paper_impact
 from impactlab.paper.statements.statement import (
+    Assessment,
     Data,
-    Judgement,
     Number,
     Ruling,
     UnknownError,
@@ -44,7 +44,7 @@ def _contact_laws(data: Data) -> Iterator[tuple[str, str]]:
     cases=_contact_laws,
     studies=(CONTACT_STUDY,),
 )
-def duration_falls(case: str, data: Data, law: str) -> Judgement:
+def duration_falls(case: str, data: Data, law: str) -> Assessment:
     """Judge the fall from each velocity to the next."""
     curve = response_curve(data, CONTACT_STUDY, "contact_duration", contact=law)
     speeds, durations = list(curve), list(curve.values())
@@ -58,7 +58,7 @@ def duration_falls(case: str, data: Data, law: str) -> Judgement:
     case = f"{case}, {speeds[0]:g} to {speeds[-1]:g} m/s"
     if count == len(falls):
         why = f"It falls at every one of the {count} steps."
-        return Judgement(case, numbers, Ruling.HOLDS, why)
+        return Assessment(case, numbers, Ruling.HOLDS, why)
     last, after = durations[count : count + 2]
     change = "rises" if after.low > last.high else "does not fall by more than its uncertainty"
     why = f"It falls up to {speeds[count]:g} m/s and {change} from there to "
@@ -66,7 +66,7 @@ def duration_falls(case: str, data: Data, law: str) -> Judgement:
     merges = after.value > 1.25 * last.value  # a second push with the first
     why += ": the sphere no longer lifts off between two pushes." if merges else "."
     outcome = Ruling.READING if count else Ruling.FAILS
-    return Judgement(case, numbers, outcome, why)
+    return Assessment(case, numbers, outcome, why)
 
 
 @statement(
@@ -79,7 +79,7 @@ def duration_falls(case: str, data: Data, law: str) -> Judgement:
     cases=_contact_laws,
     studies=(CONTACT_STUDY,),
 )
-def above_spring_mass(case: str, data: Data, law: str) -> Judgement:
+def above_spring_mass(case: str, data: Data, law: str) -> Assessment:
     """Judge the durations of both models under the same contact law."""
     if "beam_model" not in runs_of(data, CONTACT_STUDY).dims:
         raise UnknownError(f"the study {CONTACT_STUDY} does not vary beam_model")
@@ -103,11 +103,11 @@ def above_spring_mass(case: str, data: Data, law: str) -> Judgement:
         for name, (ratio, width) in ends.items()
     )
     if not lower:
-        return Judgement(case, numbers, Ruling.HOLDS, "It is above at every velocity.")
+        return Assessment(case, numbers, Ruling.HOLDS, "It is above at every velocity.")
     if not higher:
-        return Judgement(case, numbers, Ruling.FAILS, "It is above at no velocity.")
+        return Assessment(case, numbers, Ruling.FAILS, "It is above at no velocity.")
     why = f"Above at {', '.join(higher)} m/s, not at {', '.join(lower)}."
-    return Judgement(case, numbers, Ruling.READING, why)
+    return Assessment(case, numbers, Ruling.READING, why)
 
 
 @statement(
@@ -123,7 +123,7 @@ def above_spring_mass(case: str, data: Data, law: str) -> Judgement:
     ),
     studies=(CONTACT_STUDY,),
 )
-def indentation_grows(case: str, data: Data, law: str, left: bool) -> Judgement:
+def indentation_grows(case: str, data: Data, law: str, left: bool) -> Assessment:
     """Judge the growth from each velocity to the next; left: of what the contact leaves."""
     curve = response_curve(data, CONTACT_STUDY, "maximum_indentation", contact=law)
     if left:
@@ -166,7 +166,7 @@ def _low_velocities(data: Data) -> Iterator[tuple[str, float]]:
     cases=_low_velocities,
     studies=(CONTACT_STUDY,),
 )
-def both_laws_measured(case: str, data: Data, velocity: float) -> Judgement:
+def both_laws_measured(case: str, data: Data, velocity: float) -> Assessment:
     """Judge the difference between both laws' durations."""
     hertz, stronge = (
         response_curve(data, CONTACT_STUDY, "contact_duration", contact=law)[velocity]
@@ -183,7 +183,7 @@ def both_laws_measured(case: str, data: Data, velocity: float) -> Judgement:
     cases=(("Stronge contact, velocities of figure 8",),),
     studies=(CONTACT_STUDY,),
 )
-def duration_measured(case: str, data: Data) -> Judgement:
+def duration_measured(case: str, data: Data) -> Assessment:
     """Return our durations with what would judge them."""
     curve = response_curve(data, CONTACT_STUDY, "contact_duration", contact="stronge")
     numbers = tuple(
@@ -194,4 +194,4 @@ def duration_measured(case: str, data: Data) -> Judgement:
         "The measured points of figure 8, read off with their scatter, would decide; this project "
         "has the text alone."
     )
-    return Judgement(case, numbers, Ruling.UNKNOWN, why)
+    return Assessment(case, numbers, Ruling.UNKNOWN, why)

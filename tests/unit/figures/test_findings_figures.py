@@ -16,7 +16,7 @@ from impactlab.figures import data, style
 from impactlab.figures import findings as drawn
 from impactlab.figures.draw import draw_findings
 from impactlab.verification.finding import Curve, Finding, Panel, gravest_first
-from impactlab.verification.stored import packed
+from impactlab.verification.outcomes import packed
 
 Outcomes = Any
 MANY = [Curve(f"{n} nodes", np.arange(9.0), n + np.arange(9.0), n % 2 == 1) for n in range(9)]

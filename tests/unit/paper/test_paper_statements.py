@@ -10,10 +10,10 @@ import xarray as xr
 from impactlab.model.impact import paper_impact
 from impactlab.paper.statements import (
     STATEMENTS,
-    convergence,
     judge_all,
     omissions,
     plastic_strain,
+    resolution,
     velocity,
 )
 from impactlab.paper.statements.statement import Ruling, Subject
@@ -26,8 +26,8 @@ GRIDS = [301, 601, 1201]
 SPEEDS = [0.99, 5.0, 6.0, 7.0, 10.0, 15.0, 20.0]
 
 
-def verdicts(judgements: Any) -> list[Ruling]:
-    return [entry.verdict for entry in judgements]
+def verdicts(assessments: Any) -> list[Ruling]:
+    return [entry.verdict for entry in assessments]
 
 
 def second_order(nodes: Any, share: float) -> Any:
@@ -283,15 +283,15 @@ def fig06(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
 
 
 def test_nodes(fig06: Any) -> None:
-    assert verdicts(convergence.nodes_suffice.judge(fig06(0.006))) == [HOLDS] * 4
-    assert verdicts(convergence.nodes_suffice.judge(fig06(0.0005))) == [READING] * 4
-    assert verdicts(convergence.nodes_suffice.judge(fig06(0.02))) == [FAILS] * 4
+    assert verdicts(resolution.nodes_suffice.judge(fig06(0.006))) == [HOLDS] * 4
+    assert verdicts(resolution.nodes_suffice.judge(fig06(0.0005))) == [READING] * 4
+    assert verdicts(resolution.nodes_suffice.judge(fig06(0.02))) == [FAILS] * 4
 
 
 def test_points(fig06: Any) -> None:
-    good = verdicts(convergence.points_suffice.judge(fig06(0.0)))
+    good = verdicts(resolution.points_suffice.judge(fig06(0.0)))
     assert good == [HOLDS] * 4 + [READING] * 12
-    assert verdicts(convergence.points_suffice.judge(fig06(0.0, bad_points=2))) == (
+    assert verdicts(resolution.points_suffice.judge(fig06(0.0, bad_points=2))) == (
         [FAILS] * 4 + [READING] * 8 + [FAILS] * 4
     )
 
@@ -300,16 +300,16 @@ def test_two_grids_can_fail_but_not_hold(fig06: Any) -> None:
     """Half of the change between two grids is the least that the coarser one errs."""
     for share, expected in ((0.0005, UNKNOWN), (0.2, FAILS)):
         runs = fig06(share)["fig06_nodes"].sel(nodes=[601, 1201])
-        found = convergence.nodes_suffice.judge({"fig06_nodes": runs})
+        found = resolution.nodes_suffice.judge({"fig06_nodes": runs})
         assert verdicts(found) == [expected] * 4
 
 
 def test_lobatto_as_the_reason(fig06: Any) -> None:
     data = fig06(0.0)
-    assert verdicts(convergence.lobatto_is_the_reason.judge(data)) == [FAILS] * 4
+    assert verdicts(resolution.lobatto_is_the_reason.judge(data)) == [FAILS] * 4
     where = {"rule": "layers", "points": [2, 4], "velocity": 0.99}
     data["fig06_points"]["peak_force"].loc[where] *= 0.95
-    found = verdicts(convergence.lobatto_is_the_reason.judge(data))
+    found = verdicts(resolution.lobatto_is_the_reason.judge(data))
     assert found == [READING, READING, FAILS, FAILS]
 
 
@@ -317,7 +317,7 @@ def test_one_inaccurate_response_is_enough_to_fail(fig06: Any) -> None:
     data = fig06(0.0005)
     where = {"velocity": 15.0, "points": 21, "nodes": 601}
     data["fig06_nodes"]["contact_duration"].loc[where] *= 1.05
-    found = {entry.case: entry for entry in convergence.nodes_suffice.judge(data)}
+    found = {entry.case: entry for entry in resolution.nodes_suffice.judge(data)}
     assert found["15 m/s, force and motion"].verdict == FAILS
     assert "contact duration" in found["15 m/s, force and motion"].why
     assert found["15 m/s, plastic strain (PEEQ)"].verdict == READING
@@ -336,7 +336,7 @@ def test_without_studies_only_closed_forms_are_judged() -> None:
     for statement, found in judge_all({}):
         if statement.studies:
             assert set(verdicts(found)) == {UNKNOWN}, statement.name
-            assert all("has not been solved" in judgement.why for judgement in found)
+            assert all("has not been solved" in assessment.why for assessment in found)
             continue
         assert statement.kind is not Subject.STATEMENT, "only misprints are judged by closed forms"
         assert UNKNOWN not in verdicts(found), statement.name

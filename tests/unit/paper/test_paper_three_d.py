@@ -72,8 +72,8 @@ def mesh_study(data: dict[str, xr.Dataset]) -> xr.Dataset:
     return runs.sel(velocity=0.99, beam_model=["solid"])
 
 
-def verdicts(judgements: Any) -> list[Ruling]:
-    return [entry.verdict for entry in judgements]
+def verdicts(assessments: Any) -> list[Ruling]:
+    return [entry.verdict for entry in assessments]
 
 
 def test_measures_of_the_force_history(witness: Any) -> None:
@@ -110,7 +110,7 @@ def test_finer_meshes_are_used_at_the_papers_velocity(witness: Any) -> None:
 
 
 def test_element_counts_per_radius_replace_element_sizes(witness: Any) -> None:
-    """The judgements do not depend on whether element sizes or counts are varied."""
+    """The assessments do not depend on whether element sizes or counts are varied."""
     data = witness(gap=0.01, error=1e-3)
     runs = data["witness"].rename(element_size="elements_per_radius")
     sizes = runs["elements_per_radius"].values

@@ -11,7 +11,7 @@ from impactlab.figures.draw import draw_findings
 from impactlab.files import write_netcdf
 from impactlab.report.results import FINDINGS, RUNS, open_stored, write_index
 from impactlab.report.verification import write_verification
-from impactlab.verification.stored import packed
+from impactlab.verification.outcomes import packed
 
 
 @pytest.fixture

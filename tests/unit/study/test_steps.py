@@ -8,7 +8,7 @@ from impactlab.study.steps import check, failure, removable
 from impactlab.verification.catalogue import CATALOGUE
 from impactlab.verification.comparisons import Comparisons
 from impactlab.verification.finding import Check, Finding
-from impactlab.verification.stored import unpacked
+from impactlab.verification.outcomes import unpacked
 
 
 def made(name, value):

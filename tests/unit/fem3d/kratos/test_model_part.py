@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d import kratos
-from impactlab.fem3d.kratos import Engine, Run, engine
+from impactlab.fem3d.kratos import Kratos, Run, engine
 from impactlab.fem3d.solver import Mesh, quarter_mesh
 from impactlab.fem3d.solver.march import History
 from impactlab.model.impact import Impact
@@ -20,7 +20,7 @@ def ready(impact: Impact, mesh: Mesh) -> Run:
     return Run(engine(1), mesh, impact, duration=1e-4, time_step=8e-6, penalty=1e15)
 
 
-def node_values(kratos: Engine, part: Any, name: str) -> np.ndarray:
+def node_values(kratos: Kratos, part: Any, name: str) -> np.ndarray:
     variable = kratos.variable(name)
     return np.array([node.GetSolutionStepValue(variable) for node in part.Nodes])
 
@@ -68,7 +68,7 @@ def test_kinematic_hardening_is_refused(impact: Impact, mesh: Mesh) -> None:
         kratos.solve_on(mesh, hardening, duration=1e-5)
 
 
-def stubborn(kratos: Engine, failures: set[int]) -> Engine:
+def stubborn(kratos: Kratos, failures: set[int]) -> Kratos:
     """Kratos whose attempts with these numbers do not converge, whatever they find."""
     attempts = iter(range(1000))
 

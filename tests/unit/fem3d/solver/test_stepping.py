@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.contact import SHAPE
 from impactlab.fem3d.solver.elements import blocks_of
 from impactlab.fem3d.solver.hexahedron import W
+from impactlab.fem3d.solver.impulses import SHAPE
 from impactlab.fem3d.solver.march import March
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh, brick
 from impactlab.fem3d.solver.system import (

@@ -8,7 +8,7 @@ import pytest
 
 import impactlab as il
 from impactlab.fem3d import solver as solid
-from impactlab.fem3d import study as witness
+from impactlab.fem3d import study_solver as witness
 from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.fem3d.wing import VARIABLES
 from impactlab.model.cost import A_SECOND
@@ -161,7 +161,7 @@ def test_a_patch_that_is_outgrown_is_enlarged_while_there_is_room(study, monkeyp
 
 
 def test_the_answers_depend_on_the_sources_of_both():
-    from impactlab.fem3d.solver.jit import COMPILER
+    from impactlab.fem3d.solver.compiler import COMPILER
     from impactlab.solver.jit import SOURCES_HASH
 
     assert len({witness.SOLVER.version, SOURCES_HASH, COMPILER.sources_hash}) == 3

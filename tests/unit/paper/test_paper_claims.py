@@ -1,4 +1,4 @@
-"""The page on the paper, with its figures and its tables of judgements and numbers."""
+"""The page on the paper, with its figures and its tables of assessments and numbers."""
 
 import csv
 from html.parser import HTMLParser
@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from impactlab.files import read_netcdf, write_netcdf
-from impactlab.paper.page import _summary, write_paper
-from impactlab.paper.statements.statement import Judgement, Ruling
+from impactlab.paper.claims import _summary, write_paper
+from impactlab.paper.statements.statement import Assessment, Ruling
 
 Study = Any
 
@@ -55,7 +55,7 @@ def test_a_statement_is_summed_up_from_its_cases() -> None:
         (Ruling.UNKNOWN, Ruling.UNKNOWN): "cannot be judged",
     }
     for found, expected in verdicts.items():
-        assert _summary([Judgement("", (), each, "") for each in found]) == expected
+        assert _summary([Assessment("", (), each, "") for each in found]) == expected
 
 
 def _rows(path: Path) -> list[dict[str, str]]:

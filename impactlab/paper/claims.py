@@ -21,7 +21,7 @@ from impactlab.figures.labels import Display, display
 from impactlab.figures.record import Figure
 from impactlab.files import check_source, read_netcdf, replaced
 from impactlab.paper.statements import judge_all
-from impactlab.paper.statements.statement import Judgement, Ruling, Statement, Subject
+from impactlab.paper.statements.statement import Assessment, Ruling, Statement, Subject
 from impactlab.report.page import Cell, Row, Table, pictures, provenance, write_page
 from impactlab.variables import provenance as made_now
 
@@ -40,8 +40,8 @@ SECTIONS = {
         "meets.",
     ),
 }
-"""Title and first paragraph of each section of judgements."""
-Judged = Sequence[tuple[Statement, list[Judgement]]]
+"""Title and first paragraph of each section of assessments."""
+Judged = Sequence[tuple[Statement, list[Assessment]]]
 FIGURES = (
     ("05a", "fig05", "first_contact"),
     ("05b", "fig05", "force_history"),
@@ -75,8 +75,10 @@ def write_paper(folders: Sequence[Path], output: Path) -> None:
     judged = judge_all(runs)
     groups = {kind: [entry for entry in judged if entry[0].kind is kind] for kind in Subject}
     statements = groups[Subject.STATEMENT]
-    tally = Counter(_summary(judgements) for _, judgements in statements)
-    cases = Counter(judgement.verdict for _, judgements in statements for judgement in judgements)
+    tally = Counter(_summary(assessments) for _, assessments in statements)
+    cases = Counter(
+        assessment.verdict for _, assessments in statements for assessment in assessments
+    )
     drawings = []
     for number, study, name in FIGURES:
         figure = applicable(*stored[study]).get(name) if study in stored else None
@@ -115,13 +117,13 @@ def _caption(study: str, figure: Figure, runs: xr.Dataset, analysis: xr.Dataset)
     return " ".join(filter(None, (shown, labels.fixed(runs), why, f"Study: {study}.")))
 
 
-def _summary(judgements: Sequence[Judgement]) -> str:
+def _summary(assessments: Sequence[Assessment]) -> str:
     """Return the verdict of all cases; that of the first where others need a reading.
 
     MIXED where some hold and some do not. Cases that cannot be judged count where all are such.
     """
     verdicts = [
-        judgement.verdict for judgement in judgements if judgement.verdict != Ruling.UNKNOWN
+        assessment.verdict for assessment in assessments if assessment.verdict != Ruling.UNKNOWN
     ]
     if not verdicts:
         return str(Ruling.UNKNOWN)
@@ -132,9 +134,9 @@ def _summary(judgements: Sequence[Judgement]) -> str:
 def _overview(judged: Judged) -> Table:
     """Return one row per statement: the verdict, its first case, and the numbers of its cases."""
     rows: list[Row] = []
-    for statement, judgements in judged:
-        counts = Counter(judgement.verdict for judgement in judgements)
-        first, verdict = judgements[0], _summary(judgements)
+    for statement, assessments in judged:
+        counts = Counter(assessment.verdict for assessment in assessments)
+        first, verdict = assessments[0], _summary(assessments)
         stands = verdict in (Ruling.HOLDS, Ruling.READING)
         cells = [Cell(str(counts[ruling] or "–"), "number") for ruling in Ruling]
         answer = f"{labels.sentence(first.case)}: {first.why}"
@@ -155,17 +157,17 @@ def _misprints(caption: str, judged: Judged, heading: str, verdict: str) -> Tabl
     return Table(caption, [heading, "What holds", verdict], rows)
 
 
-def _cases(judgements: Iterable[Judgement]) -> Table:
+def _cases(assessments: Iterable[Assessment]) -> Table:
     """Return one row per case."""
     wrong = Ruling.FAILS, Ruling.UNKNOWN
     rows: list[Row] = [
         [
-            judgement.case,
-            _numbers(judgement) or "–",
-            Cell(judgement.verdict, "warning" if judgement.verdict in wrong else ""),
-            judgement.why,
+            assessment.case,
+            _numbers(assessment) or "–",
+            Cell(assessment.verdict, "warning" if assessment.verdict in wrong else ""),
+            assessment.why,
         ]
-        for judgement in judgements
+        for assessment in assessments
     ]
     return Table("Judged cases", ["Case or reading", "Our number", "Verdict", "Why"], rows)
 
@@ -182,27 +184,29 @@ def _solved(data: Mapping[str, xr.Dataset]) -> Table:
 
 
 def _write_tables(judged: Judged, output: Path) -> None:
-    """Write one row per judgement, and one row per number in SI units."""
+    """Write one row per assessment, and one row per number in SI units."""
     claims = [["claim", "kind", "statement", "case", "test", "numbers", "verdict", "why"]]
     numbers = [["claim", "case", "number", "value", "uncertainty", "units"]]
-    for statement, judgements in judged:
-        for judgement in judgements:
+    for statement, assessments in judged:
+        for assessment in assessments:
             about = [statement.name, statement.kind.name.lower(), statement.text]
-            about += [judgement.case, statement.test]
-            claims.append([*about, _numbers(judgement), str(judgement.verdict), judgement.why])
-            for number in judgement.numbers:
+            about += [assessment.case, statement.test]
+            claims.append([*about, _numbers(assessment), str(assessment.verdict), assessment.why])
+            for number in assessment.numbers:
                 values = [f"{number.value:.9g}", f"{number.uncertainty:.3g}"]
-                numbers.append([statement.name, judgement.case, number.name, *values, number.units])
+                numbers.append(
+                    [statement.name, assessment.case, number.name, *values, number.units]
+                )
     output.mkdir(parents=True, exist_ok=True)
     for name, rows in (("claims.csv", claims), ("numbers.csv", numbers)):
         with replaced(output / name) as path, path.open("w", encoding="utf-8", newline="") as file:
             csv.writer(file, lineterminator="\n").writerows(rows)
 
 
-def _numbers(judgement: Judgement) -> str:
+def _numbers(assessment: Assessment) -> str:
     """Return "peak force: 12.34 ± 0.11 kN", with the digits that the uncertainty leaves."""
     texts = []
-    for number in judgement.numbers:
+    for number in assessment.numbers:
         unit = display(xr.DataArray([number.value], attrs={"units": number.units}))
         if number.percent:
             unit = Display(100.0, "%")

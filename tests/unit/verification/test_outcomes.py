@@ -4,7 +4,7 @@ import numpy as np
 
 from impactlab.files import read_netcdf, write_netcdf
 from impactlab.verification.finding import gravest_first
-from impactlab.verification.stored import packed, unpacked
+from impactlab.verification.outcomes import packed, unpacked
 
 
 def kept(dataset, tmp_path):

@@ -12,9 +12,9 @@ from impactlab.analysis.convergence.judgement import judge as judge_convergence
 from impactlab.paper.statements.statement import (
     PRINTED_DIFFERENCE,
     VELOCITY,
+    Assessment,
     Case,
     Data,
-    Judgement,
     Number,
     Ruling,
     UnknownError,
@@ -67,7 +67,7 @@ def _response_groups(data: Data, study: str) -> Iterator[Case]:
     cases=partial(_response_groups, study=NODES_STUDY),
     studies=(NODES_STUDY,),
 )
-def nodes_suffice(case: str, data: Data, velocity: float, names: tuple[str, ...]) -> Judgement:
+def nodes_suffice(case: str, data: Data, velocity: float, names: tuple[str, ...]) -> Assessment:
     """Judge 601 nodes by the error of each response."""
     errors, needed = zip(*(_nodes_error(data, velocity, name) for name in names), strict=True)
     if unbounded := [error for error in errors if np.isnan(error.uncertainty)]:
@@ -76,7 +76,7 @@ def nodes_suffice(case: str, data: Data, velocity: float, names: tuple[str, ...]
         if not 0.5 * worst.value > TOLERANCE:
             raise UnknownError(f"the {worst.name} is not known: it takes three grids or more")
         why = f"Half of the change to the finest grid exceeds {100 * TOLERANCE:g} %: {worst.name}."
-        return Judgement(case, errors, Ruling.FAILS, why)
+        return Assessment(case, errors, Ruling.FAILS, why)
     highest = [error.high for error in errors]
     worst, least = names[int(np.argmax(highest))].replace("_", " "), max(needed)
     numbers = (*errors, Number("least nodes for all of them", least, "1"))
@@ -128,7 +128,7 @@ def _points_cases(data: Data) -> Iterator[Case]:
 )
 def points_suffice(
     case: str, data: Data, where: dict[str, Any], points: int, names: tuple[str, ...], literal: bool
-) -> Judgement:
+) -> Assessment:
     """Judge a reading of P = 2 by the error of each response."""
     errors = tuple(_points_error(data, where, points, name) for name in names)
     worst = max(errors, key=lambda error: error.high)
@@ -166,7 +166,7 @@ PRINTED_LAYERS = 0.069  # what the paper says of Zhang's layered beam against fi
     cases=tuple((f"{points} layers over the depth", points) for points in (2, 4, 10, 20)),
     studies=(POINTS_STUDY,),
 )
-def lobatto_is_the_reason(case: str, data: Data, points: int) -> Judgement:
+def lobatto_is_the_reason(case: str, data: Data, points: int) -> Assessment:
     """Judge the change from Lobatto's points to so many layers."""
     runs = runs_of(data, POINTS_STUDY)
     gaps = []

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.contact import PARTS, RULE, SHAPE, bulges, close_gaps
+from impactlab.fem3d.solver.impulses import PARTS, RULE, SHAPE, bulges, close_gaps
 from impactlab.fem3d.solver.mesh import _faces
 
 DT, SIDE = 0.1, 3

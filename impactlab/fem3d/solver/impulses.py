@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from impactlab.fem3d.solver.jit import Array, compiled, inlined
+from impactlab.fem3d.solver.compiler import Array, compiled, inlined
 from impactlab.types import Floats
 
 _SIDE = 4  # integration points along a face's side
