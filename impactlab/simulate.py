@@ -17,7 +17,7 @@ from impactlab.jit import precompile
 from impactlab.model.checks import column, integer, positive
 from impactlab.model.contact_compliance import case_fields
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact
+from impactlab.model.impact import Beam, Impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
 from impactlab.model.plausibility import (
     ImplausibleWarning,
@@ -27,13 +27,14 @@ from impactlab.model.plausibility import (
 )
 from impactlab.model.quantities import Quantity, as_text, in_si
 from impactlab.model.quantities import duration as duration_of
+from impactlab.model.section import fibre_table, integration_rule
 from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LOADS, LUMPED_MODELS, SCHEMES
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.jit import FOLDER
 from impactlab.solver.leapfrog import is_extended, kernel_of
 from impactlab.solver.outputs import blank
-from impactlab.solver.section import rule_points
+from impactlab.solver.section import FibreSection, make_section
 from impactlab.solver.types import CASE
 from impactlab.variables import (
     HISTORIES,
@@ -330,6 +331,7 @@ def solve(
         raise ValueError("profiles need the same nodes, points and rule in every run")
     nodes, points = (int(cases[0].nodes), int(cases[0].points)) if profiles else (-1, 0)
     half, fibres, runs = nodes // 2 + 1, points // 2, cases.size
+    table = fibre_table(cases)
     responses = blank(runs)
     histories = np.full((runs, len(HISTORIES), samples), np.nan)
     deflection = np.full((runs, half), np.nan)
@@ -342,7 +344,7 @@ def solve(
         model, scheme, extended = kinds[:, start]
         compile_kernels([BEAM_MODELS[model]], [SCHEMES[scheme]], [bool(extended)])
         kernel_of(model, scheme, bool(extended))(
-            cases[start:end], *(array[start:end] for array in arrays)
+            cases[start:end], table[start:end], *(array[start:end] for array in arrays)
         )
     columns = {name: responses[name].copy() for name in responses.dtype.names or ()}
     if samples:
@@ -401,8 +403,15 @@ def answer_variables(
 def profile_coordinates(impact: Impact, discretisation: Discretisation) -> dict[str, Any]:
     """Return the `x` and `z` coordinates (m) of fields along the beam."""
     beam = impact.beam
-    points = rule_points(discretisation.rule, discretisation.points)
-    return {"x": np.linspace(0.0, beam.span, discretisation.nodes), "z": 0.5 * beam.depth * points}
+    z, _ = beam.section.fibres(*integration_rule(discretisation.rule, discretisation.points))
+    return {"x": np.linspace(0.0, beam.span, discretisation.nodes), "z": z}
+
+
+def fibre_section(case: Any) -> FibreSection:
+    """Return the kernels' section of a case, for checks."""
+    (fibres,) = fibre_table(np.atleast_1d(case))
+    section: FibreSection = make_section(case, fibres)
+    return section
 
 
 def _one_by_one(
@@ -438,11 +447,23 @@ def _table(
         if entry.choices:
             numbered = enumerate(entry.choices)
             values[name] = sum(at * (values[name] == word) for at, word in numbered)
-    values |= case_fields(impact)
+    values |= _section_fields(impact.beam) | case_fields(impact)
     cases = np.zeros(runs, dtype=CASE)
     for name in CASE.names or ():
         cases[name] = values[name]
     return cases
+
+
+def _section_fields(beam: Beam) -> dict[str, Any]:
+    """Return the fields of solver.types.CASE that hold properties of the section."""
+    section, metal = beam.section, beam.material
+    return {
+        "mass_per_length": beam.mass_per_length,
+        "rotary_inertia": section.rotary_inertia(metal.density),
+        "shear_stiffness": beam.shear_stiffness,
+        "plate_stiffness": section.plate_stiffness(metal.youngs_modulus, metal.poissons_ratio),
+        "stress_per_moment": section.stress_per_moment,
+    }
 
 
 # Whole beams from half beams with half depths, outermost fibre first

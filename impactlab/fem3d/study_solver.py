@@ -48,7 +48,8 @@ log = logging.getLogger(__name__)
 SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))  # the table's records
 SOLID_MODEL = len(BEAM_MODELS)  # number of the 3-D FE model, after those of the kernels
 _BEAM_MODELS_ONLY = (
-    *("contact", "load", "shear_coefficient", "compliance", "bending_compliance"),
+    *("contact", "load", "compliance", "bending_compliance"),
+    *("shear_coefficient", "shear_stiffness"),
     *("nodes", "points", "rule", "scheme", "courant"),
 )
 """Fields that the 3-D FE model does not use."""

@@ -46,8 +46,8 @@ _BESIDE: dict[str, Any] = {
 }
 """Legend of the orders, to the right of a panel."""
 _DASHED: dict[str, Any] = {"linestyle": (0, (2, 1.5)), "linewidth": 0.6}
-_BEAM = ("beam_span", "beam_depth", "beam_density", "beam_youngs_modulus", "beam_model")
-_INPUTS = (*_BEAM, "scheme", "nodes", "courant", "duration")
+_BEAM = ("beam_span", "beam_width", "beam_depth", "beam_density", "beam_youngs_modulus")
+_INPUTS = (*_BEAM, "beam_model", "scheme", "nodes", "courant", "duration")
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from impactlab.model.section import section_of
 from impactlab.solver import BEAM_MODELS, SCHEMES
 
 A_SECOND = 3e8
@@ -19,9 +20,9 @@ def node_steps(cases: Any) -> Any:
     for the paper's beam by leapfrog, a bar wave's over a spacing for the modal scheme, and half of
     it, roughly, for the other models of the beam.
     """
-    dx = cases["beam_span"] / (cases["nodes"] - 1)
+    dx, section = cases["beam_span"] / (cases["nodes"] - 1), section_of(cases)
     wave = dx * np.sqrt(cases["beam_density"] / cases["beam_youngs_modulus"])
-    bending = 0.5 * wave * dx * np.sqrt(12.0) / cases["beam_depth"]
+    bending = 0.5 * wave * dx * np.sqrt(section.area / section.second_moment)
     bends = cases["beam_model"] <= BEAM_MODELS.index("elastic")
     modal = cases["scheme"] == SCHEMES.index("modal")
     largest = np.where(modal, wave, np.where(bends, bending, 0.5 * wave))
@@ -52,7 +53,7 @@ def work(cases: Any) -> Any:
     hertz, indentation = _hertz(cases)
     stiffness = 1.5 * hertz * np.sqrt(np.minimum(indentation, radius))
     dx = cases["beam_span"] / (nodes - 1)
-    node = cases["beam_density"] * cases["beam_width"] * cases["beam_depth"] * dx
+    node = section_of(cases).mass_per_length(cases["beam_density"]) * dx
     # the largest step of the sphere, and of the beam's middle node if any, on that spring
     step = 2.0 / np.sqrt(stiffness * (1.0 / mass + np.where(lumped, 0.0, 1.0 / node)))
     contact = cases["duration"] / (cases["courant"] * step)
@@ -85,12 +86,12 @@ def swing(cases: Any) -> Any:
     is struck at mid-span (Cox), and the time in which a plastic hinge there stops the sphere. A
     rigid beam does not swing.
     """
-    span, depth = cases["beam_span"], cases["beam_depth"]
-    area = cases["beam_width"] * depth
-    stiffness = 4.0 * cases["beam_youngs_modulus"] * area * depth**2 / span**3
-    mass = cases["sphere_mass"] + 17.0 / 35.0 * cases["beam_density"] * area * span
+    span, section = cases["beam_span"], section_of(cases)
+    stiffness = 48.0 * section.bending_stiffness(cases["beam_youngs_modulus"]) / span**3
+    beam = section.mass_per_length(cases["beam_density"]) * span
+    mass = cases["sphere_mass"] + 17.0 / 35.0 * beam
     yields = cases["beam_model"] != BEAM_MODELS.index("elastic")
-    collapse = cases["beam_yield_stress"] * area * depth / span
+    collapse = 4.0 * cases["beam_yield_stress"] * section.plastic_modulus / span
     hinge = yields * cases["sphere_mass"] * cases["velocity"] / collapse
     period = 2.0 * np.pi * np.sqrt(mass / stiffness)
     return np.where(cases["beam_model"] == BEAM_MODELS.index("rigid"), 0.0, period + hinge)

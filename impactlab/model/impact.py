@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from impactlab import wings
 from impactlab.model.checks import instance, number, one_of, positive, require
 from impactlab.model.quantities import SI, Quantity, engineering
+from impactlab.model.section import SHAPES, Rectangle
 from impactlab.solver import BEAM_MODELS, COMPLIANCES, LOADS, PRESTRESSES
 from impactlab.solver.contact import LAWS
 
@@ -153,7 +154,7 @@ class Sphere:
 
 @dataclass(frozen=True, kw_only=True)
 class Beam:
-    """A simply supported beam of rectangular section.
+    """A simply supported beam.
 
     Parameters
     ----------
@@ -165,12 +166,14 @@ class Beam:
         Metal of the beam.
     shear_coefficient : Quantity, default 5/6
         Shear force over G A times the shear angle, of Timoshenko's beam alone.
+    shape : {"rectangle"}, default "rectangle"
+        Shape of the section.
 
     Raises
     ------
     ValueError
         If a length is not finite and positive, the depth not below the span, the shear coefficient
-        not in (0, 1], or the material is not a `Material`.
+        not in (0, 1], the shape unknown, or the material is not a `Material`.
 
     Examples
     --------
@@ -183,7 +186,8 @@ class Beam:
     width: SI[float] = SI("m")
     depth: SI[float] = SI("m")
     material: Material
-    shear_coefficient: SI[float] = SI("1", 5.0 / 6.0)
+    shear_coefficient: SI[float] = SI("1", Rectangle.shear_coefficient(0.3))
+    shape: str = "rectangle"
 
     def __post_init__(self) -> None:
         instance("Beam", "material", self.material, Material)
@@ -194,6 +198,18 @@ class Beam:
         k = positive("Beam", "shear_coefficient", self.shear_coefficient)
         message = "must be in (0, 1]; 5/6 holds for a rectangle"
         require(k <= 1, "Beam", "shear_coefficient", self.shear_coefficient, message)
+        one_of("Beam", "shape", self.shape, tuple(SHAPES))
+
+    @property
+    def section(self) -> Rectangle:
+        """Section of the beam, which knows its area, second moment and fibres.
+
+        Returns
+        -------
+        Rectangle
+            The section (model/section.py).
+        """
+        return SHAPES[self.shape](self.width, self.depth)
 
     @property
     def mass_per_length(self) -> float:
@@ -204,7 +220,8 @@ class Beam:
         float
             rho A, in kg/m.
         """
-        return self.material.density * self.width * self.depth
+        mass: float = self.section.mass_per_length(self.material.density)
+        return mass
 
     @property
     def bending_stiffness(self) -> float:
@@ -215,7 +232,21 @@ class Beam:
         float
             EI, in N m2.
         """
-        return self.material.youngs_modulus * self.width * self.depth**3 / 12.0
+        stiffness: float = self.section.bending_stiffness(self.material.youngs_modulus)
+        return stiffness
+
+    @property
+    def shear_stiffness(self) -> float:
+        """Shear stiffness of Timoshenko's beam.
+
+        Returns
+        -------
+        float
+            k G A, in N.
+        """
+        shear_modulus = 0.5 * self.material.youngs_modulus / (1.0 + self.material.poissons_ratio)
+        stiffness: float = self.shear_coefficient * shear_modulus * self.section.area
+        return stiffness
 
 
 @dataclass(frozen=True, kw_only=True)

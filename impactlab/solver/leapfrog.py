@@ -37,7 +37,7 @@ from impactlab.solver.fibre_plasticity import (
 )
 from impactlab.solver.jit import allocating, compiled, inlined
 from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE
-from impactlab.solver.section import FibreSection, Rule, cut_section, make_rule, with_rate
+from impactlab.solver.section import FibreSection, Room, cut_section, make_room, with_rate
 from impactlab.solver.stability import discretise
 from impactlab.solver.state import BeamModel, Flight, State
 from impactlab.solver.types import CONTACT_PATCH, MODAL, Array, Record
@@ -172,10 +172,9 @@ def _time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:  # noqa:
                 contact.shift = pair.bending * (plastic.M_0[mid] / section.stiffness - kappa)
                 approach = delta - contact.shift
             if moments is not None and pair.prestress[0] > 0.0:
-                per_moment = 6.0 / (case.beam_width * case.beam_depth * case.beam_depth)
                 along, across = moments(state, now)
-                contact.stress_along = per_moment * along
-                contact.stress_across = per_moment * across
+                contact.stress_along = case.stress_per_moment * along
+                contact.stress_across = case.stress_per_moment * across
                 F = prestressed_force(contact, events, pair, approach, step * dt, dt)
             else:
                 F = contact_force(contact, events, pair, approach, step * dt, dt)
@@ -229,17 +228,17 @@ def _time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:  # noqa:
 
 
 @allocating
-def _section_at_rate(case: Record, rule: Rule) -> FibreSection:
-    return with_rate(cut_section(case, rule), case)
+def _section_at_rate(case: Record, fibres: Array, room: Room) -> FibreSection:
+    return with_rate(cut_section(case, fibres, room), case)
 
 
 @compiled
 def _end_of_alike(cases: Array, start: int) -> int:
-    """Return where the cases end that from `start` on need the same memory and the same rule."""
+    """Return where the cases end that from `start` on need the same memory."""
     stop, first = start + 1, cases[start]
     while stop < cases.size:
         case = cases[stop]
-        if case.nodes != first.nodes or case.points != first.points or case.rule != first.rule:
+        if case.nodes != first.nodes or case.points != first.points:
             break
         stop += 1
     return stop
@@ -309,12 +308,13 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     extended: with a load over the contact patch, strain rate, bending across the width and stress
     beneath the contact, which other kernels are free of, so that they compile sooner.
 
-    It solves every case of R, by records and arrays of as many rows. cases: CASE records. answers:
-    blank RESPONSE records, filled. contacts, events: zeros, CONTACT and EVENTS records to work in.
-    samples: shape (R, 5, S), filled with force, mid-span deflection, mid-span curvature, sphere
-    displacement and indentation at S equal intervals from 0 to the duration; S = 0 for none.
-    deflection (R, n + 1), plastic_strain and peeq (R, n + 1, P // 2): filled with the half beam's
-    final state; length 0 for none. A run that diverges leaves NaN and its status.
+    It solves every case of R, by records and arrays of as many rows. cases: CASE records. fibres:
+    as by model.section.fibre_table. answers: blank RESPONSE records, filled. contacts, events:
+    zeros, CONTACT and EVENTS records to work in. samples: shape (R, 5, S), filled with force,
+    mid-span deflection, mid-span curvature, sphere displacement and indentation at S equal
+    intervals from 0 to the duration; S = 0 for none. deflection (R, n + 1), plastic_strain and peeq
+    (R, n + 1, P // 2): filled with the half beam's final state; length 0 for none. A run that
+    diverges leaves NaN and its status.
 
     A record does not keep its array alive in compiled code, so kernels make no arrays of records:
     those of all runs are the caller's, who holds them until this returns.
@@ -324,6 +324,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
 
     def kernel(
         cases: Array,
+        fibres: Array,
         answers: Array,
         contacts: Array,
         events: Array,
@@ -336,12 +337,13 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
         while stop < cases.size:
             start, first = stop, cases[stop]
             stop = _end_of_alike(cases, start)
-            rule, size = make_rule(first), make_grid(first.nodes // 2, 1.0, 1.0, 1.0, 1.0)
-            section = cut(first, rule)
+            room, size = make_room(first), make_grid(first.nodes // 2, 1.0, 1.0, 1.0, 1.0)
+            section = cut(first, fibres[start], room)
             beam, plastic = make_beam(size), make_plastic_state(size, section)
             extra = make(first, section, size)
             for r in range(start, stop):
-                case, pair, section = cases[r], make_pair(cases[r]), cut(cases[r], rule)
+                case, pair = cases[r], make_pair(cases[r])
+                section = cut(case, fibres[r], room)
                 grid, steps = discretise(case, pair, section)
                 rest_beam(beam)
                 rest_plastic_state(plastic, section)

@@ -34,7 +34,7 @@ class Lumped(NamedTuple):
 @compiled
 def mid_span(case: Record, EI: float) -> tuple[float, float]:
     """Return (generalised mass in kg, static stiffness in N/m) of the mid-span."""
-    beam = case.beam_density * case.beam_width * case.beam_depth * case.beam_span
+    beam = case.mass_per_length * case.beam_span
     return 17.0 / 35.0 * beam, 48.0 * EI / case.beam_span**3
 
 

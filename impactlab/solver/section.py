@@ -1,10 +1,7 @@
-"""The fibre section: its integration rule, and from curvature to bending moment.
+"""The fibre section: from curvature to bending moment.
 
-The rules, on [-1, 1] over the depth with weights that sum to 2, are computed for any number of
-points P by Newton's method on the Legendre polynomials.
-
-strain(z) = -z kappa, M = B * integral of z stress dz (N m). The section and its strains are
-antisymmetric about the axis, so only the fibres with z > 0 are kept, each counted twice.
+strain(z) = -z kappa, M = sum over the fibres of area z stress (N m). The strains are antisymmetric
+about the axis, so only the fibres with z > 0 are kept, each counted twice.
 While no fibre yields, M = M_0 - EI kappa: a section remembers M_0 and the interval
 [kappa_min, kappa_max] of curvature (1/m) in which that holds, and only leaving it costs a loop
 over the fibres.
@@ -22,14 +19,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver import RULES
-from impactlab.solver.jit import allocating, called_from_python, compiled, over_fibres
+from impactlab.solver.jit import allocating, compiled, over_fibres
 from impactlab.solver.strain_rate import CowperSymonds, overstress_ratio
 from impactlab.solver.types import ELASTIC, Array, Record
-
-_LOBATTO = RULES.index("lobatto")
-_LEGENDRE = RULES.index("legendre")
-_NEWTON_STEPS = 100
 
 FAR = 1e300
 """A curvature that no section reaches (1/m)."""
@@ -50,10 +42,10 @@ class Moduli(NamedTuple):
 class FibreSection(NamedTuple):
     """The rule's fibres and their material, for one run.
 
-    z: distance from the axis, m, outermost first; area: twice B times the rule's weight, m2;
-    lever: E area z, N m; each of shape (P // 2,). stiffness: (EI)_q = sum(E area z^2), N m2, the
-    rule's own. yield_curvature: where the outermost fibre first yields, 1/m. rate: see
-    strain_rate.py; None in the kernels without it.
+    z: distance from the axis, m, outermost first; area: twice the fibre's, m2, for its mirror image
+    (both by model/section.py); lever: E area z, N m; each of shape (P // 2,). stiffness: (EI)_q =
+    sum(E area z^2), N m2, the rule's own. yield_curvature: where the outermost fibre first yields,
+    1/m. rate: see strain_rate.py; None in the kernels without it.
     """
 
     z: Array
@@ -65,91 +57,33 @@ class FibreSection(NamedTuple):
     rate: CowperSymonds | None
 
 
-class Rule(NamedTuple):
-    """An integration rule, and room for the section of a run, all of shape (P // 2,).
+class Room(NamedTuple):
+    """Room for the section of a run: z, area and lever, see FibreSection."""
 
-    position, weight: see upper_half. z, area, lever: see FibreSection.
-    """
-
-    position: Array
-    weight: Array
     z: Array
     area: Array
     lever: Array
 
 
-@compiled
-def legendre_pair(degree: int, x: float) -> tuple[float, float]:
-    """Return (P_n(x), P_{n-1}(x)), n = degree >= 1, by the three-term recurrence."""
-    previous, current = 1.0, x
-    for k in range(2, degree + 1):
-        previous, current = current, ((2 * k - 1) * x * current - (k - 1) * previous) / k
-    return current, previous
-
-
-@called_from_python
-def upper_half(rule: int, points: int, positions: Array, weights: Array) -> None:
-    """Fill `positions`, `weights`, shape (points // 2,), with the points above 0, outermost first.
-
-    The rest of the rule is their mirror image, and for odd P the point 0, which bends nothing.
-    Legendre: the roots of P_n, n = P, with the weights 2 (1 - x^2)/(n P_{n-1})^2. Lobatto: those of
-    (1 - x^2) P'_n, n = P - 1, with 2/(n (n + 1) P_n^2).
-    """
-    lobatto = rule == _LOBATTO
-    n = points - 1 if lobatto else points
-    for j in range(points // 2):
-        if not (lobatto or rule == _LEGENDRE):
-            positions[j], weights[j] = 1.0 - (2 * j + 1) / points, 2.0 / points
-            continue
-        if lobatto:
-            x = math.cos(math.pi * j / (points - 1))
-        else:
-            x = math.cos(math.pi * (j + 0.75) / (points + 0.5))
-        for _ in range(_NEWTON_STEPS):
-            value, lower = legendre_pair(n, x)
-            step = x * value - lower
-            step = step / (points * value) if lobatto else value * (x * x - 1.0) / (points * step)
-            x -= step
-            if abs(step) < 1e-15:
-                break
-        value, lower = legendre_pair(n, x)
-        positions[j] = x
-        if lobatto:
-            weights[j] = 2.0 / (n * points * value * value)
-        else:
-            weights[j] = 2.0 * (1.0 - x * x) / (points * lower) ** 2
-
-
-def rule_points(rule: str, points: int) -> np.ndarray:
-    """Return the positions of a rule's fibres in [-1, 1], ascending, shape (points,)."""
-    half = np.empty((2, points // 2))
-    upper_half(RULES.index(rule), points, half[0], half[1])
-    middle = np.zeros(points % 2)
-    return np.concatenate([-half[0], middle, half[0][::-1]])
-
-
 @allocating
-def make_rule(case: Record) -> Rule:
-    """Return the integration rule of a case, and room for the section of a run."""
+def make_room(case: Record) -> Room:
+    """Return room for the section of a case."""
     half = case.points // 2
-    rule = Rule(np.empty(half), np.empty(half), np.empty(half), np.empty(half), np.empty(half))
-    upper_half(case.rule, case.points, rule.position, rule.weight)
-    return rule
+    return Room(np.empty(half), np.empty(half), np.empty(half))
 
 
 @allocating
-def make_section(case: Record) -> FibreSection:
-    """Return the section of a case."""
-    return cut_section(case, make_rule(case))
+def make_section(case: Record, fibres: Array) -> FibreSection:
+    """Return the section of a case; fibres: its row of model.section.fibre_table."""
+    return cut_section(case, fibres, make_room(case))
 
 
 @allocating
-def cut_section(case: Record, rule: Rule) -> FibreSection:
-    """Return the section of a case; it uses the rule's room."""
-    E, stiffness, (position, weight, z, area, lever) = case.beam_youngs_modulus, 0.0, rule
+def cut_section(case: Record, fibres: Array, room: Room) -> FibreSection:
+    """Return the section of a case in a room; fibres: see make_section."""
+    E, stiffness, (z, area, lever) = case.beam_youngs_modulus, 0.0, room
     for j in range(z.size):
-        z[j] = position[j] * (0.5 * case.beam_depth)
-        area[j] = weight[j] * (case.beam_depth * case.beam_width)
+        z[j], area[j] = fibres[0, j], fibres[1, j]
         lever[j] = E * area[j] * z[j]
         stiffness += E * area[j] * z[j] * z[j]
     return FibreSection(

@@ -27,7 +27,6 @@ from impactlab.solver.lumped import mid_span
 from impactlab.solver.responses import LARGEST_COMPLIANCE
 from impactlab.solver.section import FibreSection
 from impactlab.solver.strip import across_width
-from impactlab.solver.timoshenko import shear_stiffness
 from impactlab.solver.types import MODAL, SPRING_MASS, TIMOSHENKO, Record
 
 _GROWTH, _COARSE_GROWTH = 1.25, 2.0
@@ -89,7 +88,7 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
 
     EI: the integration rule's (N m2); dx: node spacing (m).
     """
-    mu = case.beam_density * case.beam_width * case.beam_depth
+    mu = case.mass_per_length
     push = 1.0 / (mu * dx) + 1.0 / case.sphere_mass
     if case.scheme == MODAL:
         wave = dx * math.sqrt(case.beam_density / case.beam_youngs_modulus)
@@ -107,7 +106,7 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
         return 2.0 / math.sqrt(omega_squared) / _LUMPED_STEPS
     contact = k_c * push
     if case.beam_model == TIMOSHENKO:
-        inertia, kGA = mu * case.beam_depth**2 / 12.0, shear_stiffness(case)
+        inertia, kGA = case.rotary_inertia, case.shear_stiffness
         omega_squared = (4.0 * EI / dx**2 + kGA) / inertia
         omega_squared += 4.0 * kGA / (mu * dx**2)
         if case.width_inertia > 0.0:
@@ -126,5 +125,5 @@ def discretise(case: Record, pair: Pair, section: FibreSection) -> tuple[BeamGri
     dx = case.beam_span / (case.nodes - 1)
     dt = case.courant * largest_time_step(case, pair, section.stiffness, dx)
     steps = math.ceil(case.duration / dt)
-    mu = case.beam_density * case.beam_width * case.beam_depth
-    return make_grid(case.nodes // 2, dx, case.duration / steps, mu, section.stiffness), steps
+    dt, mu = case.duration / steps, case.mass_per_length
+    return make_grid(case.nodes // 2, dx, dt, mu, section.stiffness), steps

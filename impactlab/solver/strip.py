@@ -70,8 +70,7 @@ class Strip(NamedTuple):
 @compiled
 def across_width(case: Record) -> tuple[float, float, float]:
     """Return D B (N m2), T (N m4) and B^2/24 (m2)."""
-    nu, B = case.beam_poissons_ratio, case.beam_width
-    DB = case.beam_youngs_modulus * B * case.beam_depth**3 / (12.0 * (1.0 - nu * nu))
+    nu, B, DB = case.beam_poissons_ratio, case.beam_width, case.plate_stiffness
     return DB, (1.0 - nu) * DB * B * B / 6.0, B * B / 24.0
 
 

@@ -3,7 +3,7 @@
 rho A w_tt = Q_x + p, rho I psi_tt = -M_x + Q, Q = k G A (w_x - psi), with the section's moment
 M = M_0 - EI kappa as everywhere in the kernels, but of the curvature kappa = psi_x; shear stays
 elastic. w and M at nodes, psi and Q half-way to the next node. Source: S. Timoshenko, Phil. Mag. 41
-(1921) 744; shear coefficient k = 5/6 for a rectangle.
+(1921) 744.
 """
 
 from __future__ import annotations
@@ -46,20 +46,13 @@ class Shear(NamedTuple):
     M: Array
 
 
-@compiled
-def shear_stiffness(case: Record) -> float:
-    """Return k G A in N."""
-    G = 0.5 * case.beam_youngs_modulus / (1.0 + case.beam_poissons_ratio)
-    return case.shear_coefficient * G * (case.beam_width * case.beam_depth)
-
-
 @allocating
 def make(case: Record, section: FibreSection, grid: BeamGrid) -> Shear:
     """Return the state at rest."""
-    area, size = case.beam_width * case.beam_depth, grid.mid + 3
+    size = grid.mid + 3
     return Shear(
-        shear_stiffness(case),
-        case.beam_density * area * case.beam_depth**2 / 12.0,
+        case.shear_stiffness,
+        case.rotary_inertia,
         np.zeros(size),
         np.zeros(size),
         np.zeros(size),

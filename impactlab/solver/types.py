@@ -39,6 +39,7 @@ CASE = record(
     duration velocity gravity sphere_radius sphere_mass
     sphere_density sphere_youngs_modulus sphere_poissons_ratio sphere_yield_stress
     beam_span beam_width beam_depth shear_coefficient
+    mass_per_length rotary_inertia shear_stiffness plate_stiffness stress_per_moment
     beam_density beam_youngs_modulus beam_poissons_ratio beam_yield_stress
     beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus
     beam_rate_coefficient beam_rate_exponent courant
@@ -51,5 +52,7 @@ CASE = record(
 
 The fields are the parameters of model/parameters.py, in SI, with contact law, beam model, load,
 rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS, RULES and SCHEMES) and
-the sphere's mass resolved; and the duration in s.
+the sphere's mass resolved; the duration in s; and what follows from them: of the section
+(model/section.py) rho A, rho I, k G A, E B H^3/(12 (1 - nu^2)) of a strip and the stress in the
+outermost fibre over the bending moment, and of the contact those of model/contact_compliance.py.
 """

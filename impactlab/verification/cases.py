@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
-from impactlab.simulate import case_table
+from impactlab.simulate import case_table, fibre_section
 from impactlab.solver.beam import BeamGrid
 from impactlab.solver.contact.history import make_pair
-from impactlab.solver.section import make_section
 from impactlab.solver.stability import discretise
 
 
@@ -95,5 +94,5 @@ def timoshenko_impact(velocity: float = 0.01) -> Impact:
 def discretised(impact: Impact, grid: Discretisation, duration: float) -> tuple[BeamGrid, int]:
     """Return the solver's grid, and its number of time steps in `duration` (s)."""
     case = case_table(impact, grid, duration=duration)[0]
-    cut, steps = discretise(case, make_pair(case), make_section(case))
+    cut, steps = discretise(case, make_pair(case), fibre_section(case))
     return cut, int(steps)

@@ -127,8 +127,7 @@ def _strain_energies(
 ) -> tuple[float, float]:
     """Return the (dissipated, stored) energy in J, fibre by fibre; curvature in 1/m, (nodes,)."""
     beam, material, x = impact.beam, impact.beam.material, run.x.values
-    _, weights = quadrature.rule(grid.rule, grid.points)
-    area = 0.5 * beam.depth * beam.width * weights
+    _, area = beam.section.fibres(*quadrature.rule(grid.rule, grid.points))
     strain, peeq = run.plastic_strain.values, run.equivalent_plastic_strain.values
     elastic = -np.multiply.outer(curvature, run.z.values) - strain
     stored = 0.5 * material.youngs_modulus * elastic**2

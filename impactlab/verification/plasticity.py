@@ -10,7 +10,7 @@ import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
-from impactlab.simulate import case_table, run_dataset
+from impactlab.simulate import case_table, fibre_section, run_dataset
 from impactlab.solver import RULES, section
 from impactlab.types import Floats
 from impactlab.variables import HISTORIES
@@ -66,7 +66,7 @@ def _moments(beam: Beam, rule: str, points: int, curvatures: Floats) -> Floats:
     """Return the moments (N m) of the solver's section along a path of curvatures (1/m)."""
     impact = replace(paper_impact(), beam=beam)
     grid = Discretisation(rule=rule, points=points)
-    cut = section.make_section(case_table(impact, grid, duration=1.0)[0])
+    cut = fibre_section(case_table(impact, grid, duration=1.0)[0])
     strain, peeq = np.zeros((1, points // 2)), np.zeros((1, points // 2))
     moments = []
     for kappa in curvatures:

@@ -9,8 +9,8 @@ import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.simulate import case_table, run_dataset
-from impactlab.solver.section import bend_at_rate, make_section
+from impactlab.simulate import case_table, fibre_section, run_dataset
+from impactlab.solver.section import bend_at_rate
 from impactlab.solver.strain_rate import CowperSymonds
 from impactlab.types import Floats
 from impactlab.verification.cases import with_beam_material
@@ -35,7 +35,7 @@ def strain_rate() -> Finding:
     """
     impact = with_beam_material(paper_impact(20.0), rate_coefficient=D, rate_exponent=Q)
     beam, static = impact.beam, impact.beam.material.yield_stress
-    plastic = 0.25 * static * beam.width * beam.depth**2
+    plastic = static * beam.section.plastic_modulus
     closed = plastic * (1.0 + 2.0 * Q / (2.0 * Q + 1.0) * (_RATES / D) ** (1.0 / Q))
     ours = _moments(impact, _RATES)
     comparisons: list[Comparison] = []
@@ -59,7 +59,7 @@ def strain_rate() -> Finding:
 def _moments(impact: Impact, rates: Floats) -> Floats:
     """Return the moments (N m) of the solver's section, bent at these rates of the surface."""
     grid = Discretisation(rule="layers", points=64)
-    cut, law = make_section(case_table(impact, grid, duration=1.0)[0]), CowperSymonds(D, Q)
+    cut, law = fibre_section(case_table(impact, grid, duration=1.0)[0]), CowperSymonds(D, Q)
     moments, steps, last = [], 200, 60.0 * cut.yield_curvature
     for rate in rates:
         dt = 0.5 * impact.beam.depth * last / steps / rate

@@ -13,12 +13,11 @@ import xarray as xr
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
-from impactlab.simulate import case_table, run_dataset
+from impactlab.simulate import case_table, fibre_section, run_dataset
 from impactlab.solver.beam import make_beam, move_virgin, strike
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import CONTACT, force, make_pair
 from impactlab.solver.modes import make_modes, move_modes
-from impactlab.solver.section import make_section
 from impactlab.solver.stability import discretise
 from impactlab.types import Floats
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
@@ -151,7 +150,7 @@ class _March(ABC):
 
     def __init__(self, impact: Impact, discretisation: Discretisation, duration: float) -> None:
         case = case_table(impact, discretisation, duration=duration)[0]
-        self.impact, self.pair, self.section = impact, make_pair(case), make_section(case)
+        self.impact, self.pair, self.section = impact, make_pair(case), fibre_section(case)
         self.grid, self.steps = discretise(case, self.pair, self.section)
         self.contact = np.zeros(1, CONTACT)  # Hertz contact has no memory
         self.contact[0].n = 1.5

@@ -11,7 +11,7 @@ import numpy as np
 import openseespy.opensees as ops
 
 import impactlab as il
-from impactlab.solver.section import rule_points
+from impactlab.model.section import integration_rule
 
 POINTS = 9
 
@@ -25,7 +25,7 @@ def strike(
     """
     steel, dx = beam.material, 0.5 * beam.span / elements
     E, mass = steel.youngs_modulus, steel.density * beam.width * beam.depth
-    z = rule_points("lobatto", POINTS)
+    z, _ = integration_rule("lobatto", POINTS)
     legendre = np.polynomial.legendre.Legendre.basis(POINTS - 1)(z)
     areas = beam.width * beam.depth / (POINTS * (POINTS - 1) * legendre**2)
     fibres = list(zip((0.5 * beam.depth * z).tolist(), areas.tolist(), strict=True))

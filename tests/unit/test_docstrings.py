@@ -16,6 +16,7 @@ from impactlab.validation.stated import Stated
 RETURNED = {
     "Estimate": "impactlab.study.estimate",
     "Problem": "impactlab.validation.errors",
+    "Rectangle": "impactlab.model.section",
     "Status": "impactlab.study.inventory",
     "Surrogate": "impactlab.analysis.surrogate.stored",
 }

@@ -16,11 +16,10 @@ import xarray as xr
 
 import impactlab as il
 from impactlab.model.parameters import with_values
-from impactlab.simulate import case_table, run_dataset
+from impactlab.simulate import case_table, fibre_section, run_dataset
 from impactlab.solver import RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import make_pair
-from impactlab.solver.section import make_section
 from impactlab.solver.stability import discretise
 from impactlab.variables import FLAGS, HISTORIES, STATUS_FLAGS
 
@@ -99,7 +98,7 @@ def make_case(values: dict[str, Any], steps: int) -> Case:
     """The paper's case with these values, over about so many of the kernels' time steps."""
     impact, grid = with_values(il.paper_impact(), il.Discretisation(), values)
     case = case_table(impact, grid, duration=1.0)[0]
-    pair, section = make_pair(case), make_section(case)
+    pair, section = make_pair(case), fibre_section(case)
     case.duration = steps * discretise(case, pair, section)[0].dt
     cut, steps = discretise(case, pair, section)
     return Case(impact, grid, float(case.duration), cut.dt, steps)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.simulate import case_table
-from impactlab.solver import RULES, section
+from impactlab.simulate import case_table, fibre_section
+from impactlab.solver import RULES
 from impactlab.solver.section import bend as bend_row
 from impactlab.solver.types import CASE
 from impactlab.verification.cases import with_beam_material
@@ -24,7 +24,7 @@ def make_section(points, rule, isotropic=0.0, kinematic=0.0):
     impact = with_beam_material(IMPACT, **moduli)
     cases = case_table(impact, il.Discretisation(points=points, rule=rule), duration=1e-3)
     assert cases.dtype == CASE
-    return section.make_section(cases[0]), impact.beam
+    return fibre_section(cases[0]), impact.beam
 
 
 def moments(cut, curvatures):

@@ -130,7 +130,7 @@ def least_cost(
     size = checked_size(impact, element_size)
     beam = impact.beam
     half = checked_patch(impact, size, patch)
-    far = beam.span / 2.0 * beam.width / 2.0 * beam.depth / max(beam.depth / 6.0, size) ** 3
+    far = beam.span / 4.0 * beam.section.area / max(beam.depth / 6.0, size) ** 3
     near = 2.0 * (half / size) ** 3
     fastest = max(math.sqrt(steel.youngs_modulus / density) for steel, density in _metals(impact))
     steps = int(duration * fastest / size) + 1

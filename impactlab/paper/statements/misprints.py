@@ -188,13 +188,12 @@ def elastic_phase(case: str, data: Data, begins: float) -> Assessment:
 def beam_mass(case: str, data: Data, printed: float) -> Assessment:
     """Judge the `printed` mass in kg."""
     beam = paper_impact().beam
-    per_length = beam.material.density * beam.width * beam.depth
-    mass = per_length * beam.span
+    mass = beam.mass_per_length * beam.span
     # half of the last printed digit over the value, of each factor
     share = 50.0 / 7800.0 + 0.05 / 27.8 + 0.5 / 60.0 + 0.5 / 780.0
     numbers = (
         Number("ρ B H L", mass, "kg", share * mass),
-        Number("span of the printed mass", printed / per_length, "m"),
+        Number("span of the printed mass", printed / beam.mass_per_length, "m"),
     )
     off = printed / mass - 1.0
     why = f"Printed and computed mass differ by {100 * off:.1f} % of the latter."

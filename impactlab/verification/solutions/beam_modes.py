@@ -113,7 +113,7 @@ def timoshenko_odd_modes(beam: Beam, count: int) -> BeamModes:
     """
     q, a = _odd_wave_numbers(beam, count), shear_stiffness(beam)
     EI, mu = beam.bending_stiffness, beam.mass_per_length
-    inertia = mu * beam.depth**2 / 12.0
+    inertia = beam.section.rotary_inertia(beam.material.density)
     r, p = a * q**2 / mu, (a + EI * q**2) / inertia
     half, coupling = 0.5 * (p - r), (a * q) ** 2 / (mu * inertia)
     root = np.sqrt(half**2 + coupling)
@@ -156,7 +156,7 @@ def strip_odd_modes(beam: Beam, count: int, inertia: float) -> BeamModes:
         return K
 
     q = _odd_wave_numbers(beam, count)
-    roots = np.sqrt([mu, mu * beam.depth**2 / 12.0, inertia])
+    roots = np.sqrt([mu, beam.section.rotary_inertia(steel.density), inertia])
     squares, vectors = np.linalg.eigh(springs(q) / np.outer(roots, roots))
     shapes = vectors / roots[:, None]
     y = np.einsum("i,nij->nj", middle, shapes)
@@ -174,7 +174,7 @@ def strip_odd_modes(beam: Beam, count: int, inertia: float) -> BeamModes:
 def shear_stiffness(beam: Beam) -> float:
     """Return k G A in N, k the shear coefficient, G = E/(2 (1 + nu))."""
     modulus = beam.material.youngs_modulus / (2.0 * (1.0 + beam.material.poissons_ratio))
-    return beam.shear_coefficient * modulus * beam.width * beam.depth
+    return float(beam.shear_coefficient * modulus * beam.section.area)
 
 
 def shear_deflection(beam: Beam, load: float) -> float:

@@ -29,13 +29,13 @@ def yield_curvature(beam: Beam) -> float:
 
 
 def yield_moment(beam: Beam) -> float:
-    """Return M_y = sigma_y B H^2/6 in N m."""
-    return beam.material.yield_stress * beam.width * beam.depth**2 / 6.0
+    """Return M_y in N m: the outermost fibre yields, sigma_y B H^2/6."""
+    return float(beam.material.yield_stress / beam.section.stress_per_moment)
 
 
 def plastic_moment(beam: Beam) -> float:
-    """Return M_p = sigma_y B H^2/4 in N m: every fibre yields, without hardening."""
-    return beam.material.yield_stress * beam.width * beam.depth**2 / 4.0
+    """Return M_p in N m: every fibre yields, without hardening, sigma_y B H^2/4."""
+    return float(beam.material.yield_stress * beam.section.plastic_modulus)
 
 
 def collapse_load(beam: Beam) -> float:
@@ -102,8 +102,7 @@ def path_moments(beam: Beam, curvatures: Floats, positions: Floats, weights: Flo
 
     positions, weights: the rule's on [-1, 1], shape (points,). Sign of the curvature.
     """
-    z = 0.5 * beam.depth * positions
-    area = 0.5 * beam.depth * beam.width * weights
+    z, area = beam.section.fibres(positions, weights)
     stresses = path_stresses(beam.material, np.multiply.outer(curvatures, z))
     return np.asarray(stresses @ (area * z))
 

@@ -62,8 +62,7 @@ def solve(
         material.isotropic_hardening_modulus,
         material.kinematic_hardening_modulus,
     )
-    positions, weights = quadrature.rule(rule, points)
-    z, area = 0.5 * beam.depth * positions, 0.5 * beam.depth * beam.width * weights
+    z, area = beam.section.fibres(*quadrature.rule(rule, points))
     bend, length, mass = _elements(beam, elements)
     mass[-1, -1] = 0.5 * impact.sphere.total_mass
     size = len(mass)

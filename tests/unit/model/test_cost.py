@@ -10,14 +10,14 @@ import pytest
 from impactlab.model.cost import node_steps, work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
-from impactlab.simulate import case_table, solve
+from impactlab.simulate import case_table, fibre_section, solve
 from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.solver.contact.history import make_pair
-from impactlab.solver.section import make_section
 from impactlab.solver.stability import discretise
 
 PAPER: dict[str, Any] = {
     "beam_span": 0.78,
+    "beam_width": 0.06,
     "beam_depth": 0.0278,
     "beam_density": 7800.0,
     "beam_youngs_modulus": 210e9,
@@ -69,7 +69,7 @@ def test_steps_are_about_as_many_as_the_kernel_takes(
     impact = replace(paper_impact(2.0), beam_model=model, contact="hertz")
     impact = replace(impact, sphere=replace(impact.sphere, mass=mass))
     case = case_table(impact, Discretisation(nodes=nodes), duration=1e-2)
-    pair, section = make_pair(case[0]), make_section(case[0])
+    pair, section = make_pair(case[0]), fibre_section(case[0])
     _, steps = discretise(case[0], pair, section)
     rate = 0.5 * nodes * (1.0, 1.0, 3.0, 4.0, 4.0)[BEAM_MODELS.index(model)] + 20.0
     assert 0.3 < work(case)[0] / rate / steps < 3.0

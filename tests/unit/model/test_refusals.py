@@ -35,6 +35,7 @@ REFUSED = {
     ("Beam", "width"): UNREAL,
     ("Beam", "depth"): [*UNREAL, 0.78, 1.0],
     ("Beam", "shear_coefficient"): [*UNREAL, 1.0001],
+    ("Beam", "shape"): ["circle", "Rectangle", "", None, 0],
     ("Impact", "velocity"): UNREAL,
     ("Impact", "gravity"): NEGATIVE,
     ("Impact", "contact"): ["hooke", "Hertz", "", None, 0],

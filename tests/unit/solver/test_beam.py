@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from impactlab.simulate import fibre_section
 from impactlab.solver.beam import (
     bending_energy,
     kinetic_energy,
@@ -14,7 +15,7 @@ from impactlab.solver.beam import (
     strike,
 )
 from impactlab.solver.fibre_plasticity import make_plastic_state, plastic_energy
-from impactlab.solver.section import bend, make_section
+from impactlab.solver.section import bend
 
 N = 20
 """Spacings in the half beam."""
@@ -109,7 +110,7 @@ def test_the_force_moves_mid_span_and_the_ends_are_mirrored():
 @pytest.mark.parametrize("mode", [1, 3, 7])
 def test_free_vibration_is_that_of_the_discrete_beam(make_case, mode):
     """sin(k pi x/L) cos(j theta), 4 sin^2(theta/2) = dt^2 EI/mu (4 sin^2(k pi/(4 n))/dx^2)^2."""
-    mu, dx, section = 13.0, 0.02, make_section(make_case(points=5))
+    mu, dx, section = 13.0, 0.02, fibre_section(make_case(points=5))
     EI = section.stiffness
     grid = make_grid(N, dx, 0.4 * dx**2 * np.sqrt(mu / EI), mu, EI)
     shape = np.sin(mode * np.pi * np.arange(N + 1) / (2 * N))
@@ -150,7 +151,7 @@ def test_kinetic_energy_of_a_force_on_a_straight_beam():
 
 def test_strain_energy_counts_both_halves_and_what_was_dissipated(make_case):
     """Against the fibres' own energy, E/2 (strain - plastic strain)^2 over the section."""
-    section = make_section(make_case(points=5))
+    section = fibre_section(make_case(points=5))
     beam, plastic_state = make_beam(GRID), make_plastic_state(GRID, section)
     random = np.random.default_rng(3)
     half = np.cumsum(np.cumsum(random.uniform(-3, 3, MID))) * section.yield_curvature * GRID.dx**2

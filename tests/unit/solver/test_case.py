@@ -12,6 +12,13 @@ OF_KERNELS = {
     name: entry for name, entry in PARAMETERS.items() if name not in (*SIZES, "contact_compliance")
 }
 """Without those of the 3-D model alone, and that which becomes five numbers."""
+OF_SECTION = {
+    "mass_per_length": lambda rho, E, nu, B, H, k: rho * B * H,
+    "rotary_inertia": lambda rho, E, nu, B, H, k: rho * B * H**3 / 12,
+    "shear_stiffness": lambda rho, E, nu, B, H, k: k * E / (2 + 2 * nu) * B * H,
+    "plate_stiffness": lambda rho, E, nu, B, H, k: B * E * H**3 / (12 * (1 - nu**2)),
+    "stress_per_moment": lambda rho, E, nu, B, H, k: 6 / (B * H**2),
+}
 DERIVED = (
     *("compliance", "bending_compliance", "width_inertia", "axis_compliance", "axis_bending"),
     *("stress_along", "stress_across"),
@@ -19,7 +26,7 @@ DERIVED = (
 
 
 def test_fields_are_the_parameters_and_the_duration():
-    assert sorted(CASE.names) == sorted([*OF_KERNELS, *DERIVED, "duration"])
+    assert sorted(CASE.names) == sorted([*OF_KERNELS, *OF_SECTION, *DERIVED, "duration"])
 
 
 def test_a_record_has_every_value_in_its_place(make_case):
@@ -44,7 +51,11 @@ def test_a_record_has_every_value_in_its_place(make_case):
         "scheme": SCHEMES.index("modal"),
     }
     expected = values | numbers_of_names | {"duration": 0.7} | dict.fromkeys(DERIVED, 0.0)
-    assert {name: case[name] for name in CASE.names} == expected
+    assert {name: case[name] for name in CASE.names if name not in OF_SECTION} == expected
+    beam = [values[f"beam_{name}"] for name in ("density", "youngs_modulus", "poissons_ratio")]
+    sizes = [values[name] for name in ("beam_width", "beam_depth", "shear_coefficient")]
+    for name, formula in OF_SECTION.items():
+        assert case[name] == pytest.approx(formula(*beam, *sizes), rel=1e-14)
 
 
 def test_the_spheres_mass_is_the_stated_one_or_follows_from_density(make_case):

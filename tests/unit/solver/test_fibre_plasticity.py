@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from impactlab.simulate import fibre_section
 from impactlab.solver.beam import make_beam, make_grid, move, move_virgin, strike
 from impactlab.solver.fibre_plasticity import (
     begin_tangents,
@@ -11,7 +12,7 @@ from impactlab.solver.fibre_plasticity import (
     leave_tangents,
     make_plastic_state,
 )
-from impactlab.solver.section import bend, make_section
+from impactlab.solver.section import bend
 
 N = 12
 GRID = make_grid(N, 0.02, 1e-6, 13.0, 2e4)
@@ -22,7 +23,7 @@ INNER = slice(2, MID + 1)
 @pytest.fixture(params=[(0.0, 0.0), (5e9, 0.0), (1e9, 4e9)], ids=["perfect", "isotropic", "both"])
 def section(request, make_case):
     isotropic, kinematic = request.param
-    return make_section(
+    return fibre_section(
         make_case(
             points=9,
             beam_isotropic_hardening_modulus=isotropic,

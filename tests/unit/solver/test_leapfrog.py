@@ -5,11 +5,10 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.simulate import case_table, solve
+from impactlab.simulate import case_table, fibre_section, solve
 from impactlab.solver import outputs
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.leapfrog import WORST_ENERGY_ERROR
-from impactlab.solver.section import make_section
 from impactlab.solver.stability import discretise, largest_time_step
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 
@@ -21,7 +20,7 @@ def table(duration=1e-3, grid=GRID, **varied):
 
 
 def steps_of(case):
-    pair, section = make_pair(case), make_section(case)
+    pair, section = make_pair(case), fibre_section(case)
     grid, steps = discretise(case, pair, section)
     critical = largest_time_step(case, pair, section.stiffness, grid.dx)
     return grid, steps, critical

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.simulate import simulate, simulate_many
+from impactlab.simulate import fibre_section, simulate, simulate_many
 from impactlab.solver.beam import make_grid
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.fibre_plasticity import make_plastic_state, plastic_energy
@@ -17,7 +17,7 @@ from impactlab.solver.modes import (
     mode_curvature,
     move_modes,
 )
-from impactlab.solver.section import FAR, make_section
+from impactlab.solver.section import FAR
 from impactlab.solver.stability import discretise, largest_time_step, stiffest_contact
 from impactlab.variables import STATUS_FLAGS
 from impactlab.verification.cases import elastic
@@ -118,7 +118,7 @@ HARDENING["beam_kinematic_hardening_modulus"] = 3e9
 def yielding_beam(make_case, **values):
     """The modes, sections' state, section and grid of a beam at rest."""
     case = make_case(duration=1e-3, **YIELDING, **values)
-    section = make_section(case)
+    section = fibre_section(case)
     grid, _ = discretise(case, make_pair(case), section)
     modes = make_modes(case.nodes // 2, grid, section.stiffness, section.yield_curvature)
     return modes, make_plastic_state(grid, section), section, grid
@@ -175,7 +175,7 @@ def test_a_step_with_any_sections_yielding_is_stable(make_case, values, nodes):
     The contact is a spring; sections keep some or none of their stiffness.
     """
     case = make_case(scheme="modal", nodes=nodes, **values)
-    pair, section, dx = make_pair(case), make_section(case), case.beam_span / (nodes - 1)
+    pair, section, dx = make_pair(case), fibre_section(case), case.beam_span / (nodes - 1)
     dt, k_c = largest_time_step(case, pair, section.stiffness, dx), stiffest_contact(case, pair)
     wave = dx * np.sqrt(case.beam_density / case.beam_youngs_modulus)
     assert (dt < 0.99 * wave) == bool(values)

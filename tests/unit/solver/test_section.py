@@ -8,12 +8,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from impactlab.simulate import fibre_section
 from impactlab.solver import RULES
 from impactlab.solver.fibre_plasticity import plastic_energies
 from impactlab.solver.section import bend as bend_row
 from impactlab.solver.section import (
     elastic_range,
-    make_section,
     return_mapping,
 )
 from impactlab.verification.solutions import quadrature
@@ -27,7 +27,7 @@ def cut(make_case):
     """A function that makes a section of the paper's beam."""
 
     def make(rule="lobatto", points=9, isotropic=0.0, kinematic=0.0):
-        return make_section(
+        return fibre_section(
             make_case(
                 rule=rule,
                 points=points,

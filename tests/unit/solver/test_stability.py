@@ -5,10 +5,9 @@ import pytest
 
 import impactlab as il
 from impactlab.model.parameters import with_values
-from impactlab.simulate import case_table, solve
+from impactlab.simulate import case_table, fibre_section, solve
 from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.solver.contact.history import make_pair
-from impactlab.solver.section import make_section
 from impactlab.solver.stability import _stiffness, largest_time_step, stiffest_contact
 from impactlab.variables import STATUS_FLAGS
 from impactlab.verification.solutions.contact_laws import LAWS as REFERENCE
@@ -36,7 +35,7 @@ def largest_frequency(case, stiffness, k_c):
 
 def time_steps(case):
     """(critical time step, 2/omega of the eigenvalue problem)."""
-    pair, section = make_pair(case), make_section(case)
+    pair, section = make_pair(case), fibre_section(case)
     dx = case.beam_span / (case.nodes - 1)
     ours = largest_time_step(case, pair, section.stiffness, dx)
     k_c = stiffest_contact(case, pair)

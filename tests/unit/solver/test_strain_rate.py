@@ -5,8 +5,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from impactlab.simulate import fibre_section
 from impactlab.solver.fibre_plasticity import plastic_energies
-from impactlab.solver.section import bend, bend_at_rate, make_section, with_rate
+from impactlab.solver.section import bend, bend_at_rate, with_rate
 from impactlab.solver.strain_rate import overstress_ratio
 
 HARDENINGS = [(0.0, 0.0), (5e9, 0.0), (0.0, 5e9), (2e9, 3e9)]
@@ -14,7 +15,7 @@ every_hardening = pytest.mark.parametrize(("isotropic", "kinematic"), HARDENINGS
 
 
 def at_rate(case):
-    return with_rate(make_section(case), case)
+    return with_rate(fibre_section(case), case)
 
 
 def cut(make_case, isotropic=0.0, kinematic=0.0, D=40.4, q=5.0):

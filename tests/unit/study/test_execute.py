@@ -11,10 +11,9 @@ from distributed import LocalCluster
 import impactlab as il
 from impactlab.model.cost import node_steps
 from impactlab.model.parameters import flatten
-from impactlab.simulate import case_table
+from impactlab.simulate import case_table, fibre_section
 from impactlab.solver import SCHEMES
 from impactlab.solver.contact.history import make_pair
-from impactlab.solver.section import make_section
 from impactlab.solver.stability import discretise
 from impactlab.study import execute as executing
 from impactlab.study.engine import Engine
@@ -163,7 +162,7 @@ def test_failures_are_data(tmp_path):
 def test_the_estimated_cost_is_that_of_the_kernels_steps(scheme, nodes):
     grid = il.Discretisation(nodes=nodes, points=21, scheme=scheme)
     case = case_table(il.paper_impact(), grid, duration=1e-3)[0]
-    _, steps = discretise(case, make_pair(case), make_section(case))
+    _, steps = discretise(case, make_pair(case), fibre_section(case))
     assert node_steps(case) == pytest.approx(0.5 * nodes * steps, rel=0.02)
 
 

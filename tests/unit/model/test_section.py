@@ -1,0 +1,86 @@
+"""Rules by Newton's method against scipy's eigenvalues; sections against integrals over them."""
+
+import numpy as np
+import pytest
+
+import impactlab as il
+from impactlab.model.section import (
+    SHAPES,
+    fibre_table,
+    integration_rule,
+    section_of,
+)
+from impactlab.simulate import case_table
+from impactlab.solver import RULES
+from impactlab.verification.solutions import quadrature
+
+COUNTS = [*range(2, 22), 32, 33, 48, 63, 64]
+STEEL = il.paper_impact().beam.material
+DEGREE = {"lobatto": lambda n: 2 * n - 3, "legendre": lambda n: 2 * n - 1, "layers": lambda n: 1}
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("points", COUNTS)
+def test_points_and_weights_are_those_of_scipy(rule, points):
+    positions, weights = integration_rule(rule, points)
+    expected_positions, expected_weights = quadrature.rule(rule, points)
+    np.testing.assert_allclose(positions, expected_positions, rtol=1e-13, atol=1e-14)
+    np.testing.assert_allclose(weights, expected_weights, rtol=1e-11, atol=0)
+    np.testing.assert_array_equal(positions, -positions[::-1])
+    assert np.any(positions == 0) == points % 2
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("points", COUNTS)
+def test_even_powers_are_integrated_up_to_the_rules_degree_and_no_further(rule, points):
+    positions, weights = integration_rule(rule, points)
+    degree = DEGREE[rule](points)
+
+    def error(power):
+        return (weights @ positions**power) * (power + 1) / 2 - 1
+
+    for power in range(2, degree + 1, 2):
+        assert abs(error(power)) < 1e-12
+    if points < 20:  # then the error is above rounding
+        first_missed = max(2, degree + 1 + (degree + 1) % 2)
+        assert abs(error(first_missed)) > 1e-13
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_properties_are_integrals_over_the_fibres(shape):
+    beam = il.Beam(span=1.0, width=0.05, depth=0.03, material=STEEL, shape=shape)
+    section = beam.section
+    z, area = section.fibres(*quadrature.rule("legendre", 40))
+    assert section.area == pytest.approx(area.sum(), rel=1e-12)
+    assert section.second_moment == pytest.approx(area @ z**2, rel=1e-12)
+    assert section.mass_per_length(7800.0) == pytest.approx(7800.0 * area.sum(), rel=1e-12)
+    assert section.bending_stiffness(2e11) == pytest.approx(2e11 * area @ z**2, rel=1e-12)
+    assert section.rotary_inertia(7800.0) == pytest.approx(7800.0 * area @ z**2, rel=1e-12)
+    assert section.plastic_modulus == pytest.approx(area @ np.abs(z), rel=1e-3)
+    outermost = 0.5 * section.depth
+    assert section.stress_per_moment == pytest.approx(outermost / (area @ z**2), rel=1e-12)
+    plate = 2e11 * area @ z**2 / (1 - 0.3**2)
+    assert section.plate_stiffness(2e11, 0.3) == pytest.approx(plate, rel=1e-12)
+    assert np.abs(z).max() < outermost
+
+
+def test_a_rectangles_shear_coefficient_is_five_sixths_of_energy():
+    """k = A / integral of (A s/I b)^2 dA: the shear stress (1 - (2z/H)^2) 3/2 of the mean."""
+    x, weights = quadrature.rule("legendre", 8)
+    energy = 0.5 * weights @ (1.5 * (1 - x**2)) ** 2
+    k = il.paper_impact().beam.section.shear_coefficient(0.3)
+    assert k == il.paper_impact().beam.shear_coefficient == pytest.approx(1 / energy, rel=1e-14)
+
+
+def test_kernels_get_the_fibres_above_the_axis_twice_outermost_first():
+    varied = {"points": [4, 9, 4], "rule": ["lobatto", "legendre", "layers"]}
+    varied["beam_depth"] = [0.02, 0.03, 0.04]
+    cases = case_table(il.paper_impact(), il.Discretisation(), duration=1e-3, varied=varied)
+    table = fibre_table(cases)
+    assert table.shape == (3, 2, 4)
+    for case, row, rule in zip(cases, table, varied["rule"], strict=True):
+        z, area = section_of(case).fibres(*quadrature.rule(rule, int(case.points)))
+        half = case.points // 2
+        np.testing.assert_allclose(row[0, :half], z[::-1][:half], rtol=1e-13)
+        np.testing.assert_allclose(row[1, :half], 2 * area[::-1][:half], rtol=1e-11)
+        assert not row[:, half:].any()
