@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 import xarray as xr
 
 import impactlab as il
-from impactlab.analysis.catalogue import ANALYSES
+from impactlab.analysis import ANALYSES
 from impactlab.methods import SAMPLES
 from impactlab.methods.sampling import RandomSample
 from impactlab.model.parameters import PARAMETERS

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.catalogue import ANALYSES
+from impactlab.analysis import ANALYSES
 from impactlab.analysis.numerical import numerical
-from impactlab.analysis.responses import labels
+from impactlab.methods.runs import labels
 from impactlab.methods.verdict import with_numerical_error
 
 
@@ -23,7 +23,7 @@ def analyse(
     ----------
     runs : xarray.Dataset
         Solved study as in runs.nc, in SI units. Its attribute `analyses` lists the requested
-        analyses (impactlab.analysis.catalogue.ANALYSES); without it, all are.
+        analyses (impactlab.analysis.ANALYSES); without it, all are.
     resolution : xarray.Dataset, optional
         Result of `Study.recommend` for this study: adds the numerical uncertainty of the responses.
     refinement : xarray.Dataset, optional

@@ -23,9 +23,8 @@ import scipy  # its stats are loaded when first used
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.analysis.responses import labels, usable
 from impactlab.methods import NO_DISTRIBUTION, independent_runs, sobol
-from impactlab.methods.runs import Sample, listed
+from impactlab.methods.runs import Sample, labels, listed, usable
 from impactlab.types import Floats
 from impactlab.verdicts import Verdict, flagged, names
 

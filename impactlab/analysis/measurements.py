@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.responses import usable
+from impactlab.methods.runs import usable
 from impactlab.model.parameters import REFINEMENTS
 from impactlab.variables import FAILED, MARKED, reasons
 from impactlab.verdicts import Verdict, flagged

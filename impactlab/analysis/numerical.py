@@ -15,11 +15,10 @@ import xarray as xr
 
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL, estimate
-from impactlab.analysis.responses import usable
 from impactlab.analysis.sensitivity.imputation import imputed
 from impactlab.methods import sobol
 from impactlab.methods.estimators import half_width
-from impactlab.methods.runs import Sample, in_order, listed
+from impactlab.methods.runs import Sample, in_order, listed, usable
 from impactlab.methods.saltelli import Outputs, estimates
 from impactlab.methods.verdict import still, tail
 from impactlab.types import Floats

@@ -10,10 +10,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.analysis.responses import usable
 from impactlab.methods import SAMPLES, independent_runs
 from impactlab.methods.morris import Morris
-from impactlab.methods.runs import Sample
+from impactlab.methods.runs import Sample, usable
 from impactlab.types import Floats
 
 FEWEST, SHARE = 5, 0.01

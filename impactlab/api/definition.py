@@ -47,7 +47,7 @@ class Study(StudyFolder):
         `simulate`) that return a number, or a `Function` with a unit: `{"momentum": function,
         "peak_force": "peak_force"}`. Of a model `function`, the names of its results.
     analyses : sequence of str or str, optional
-        Names (impactlab.analysis.catalogue.ANALYSES); by default all.
+        Names (impactlab.analysis.ANALYSES); by default all.
     limits : mapping of str to Quantity, optional
         Limits by name of the response: `analyse` gives the probability that a run exceeds them.
     store : mapping, optional

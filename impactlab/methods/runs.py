@@ -1,8 +1,8 @@
-"""The runs of a sample: their attributes, parameters and factors."""
+"""The runs of a study: their attributes, responses, parameters and factors."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from impactlab.methods.distributions import CHOICE
 from impactlab.types import Floats
+from impactlab.variables import status_bits
 
 
 def listed(runs: xr.Dataset, attribute: str) -> list[str]:
@@ -34,6 +35,48 @@ def in_order(runs: xr.Dataset) -> xr.Dataset:
     """Return a sample in the order of `run`: as it is, not read, where it has that order."""
     numbers = runs["run"].values
     return runs if (numbers[1:] >= numbers[:-1]).all() else runs.sortby("run")
+
+
+def usable(runs: xr.Dataset, response: str | None = None) -> xr.DataArray:
+    """Return the requested responses in SI units on (response, *design dims).
+
+    NaN where a run gives no usable number: it is not finite, or its status excludes it. Coordinates
+    response_units and response_long_name describe each one. response: this one alone, without the
+    coordinates on `run`, so that memory holds little beside it. Raises ValueError when a requested
+    response is not among the variables.
+    """
+    names = listed(runs, "responses") if response is None else [response]
+    described = labels(runs, names)
+    if response is None:
+        values = runs[names].compute().to_array("response", name="value")
+    else:
+        alone = runs[response].rename("value")
+        of_runs = [name for name, coordinate in alone.coords.items() if "run" in coordinate.dims]
+        values = alone.drop_vars(of_runs).compute().expand_dims(response=[response])
+    values = values.astype(float, copy=False).assign_coords(described)
+    status = xr.DataArray(runs["status"].variable.compute())
+    bits = np.array([status_bits([name]) for name in names], status.dtype)
+    excluded = (status & xr.DataArray(bits, dims="response")) != 0
+    good = np.isfinite(values) & ~excluded.transpose(*values.dims)
+    return values if good.all() else values.where(good)
+
+
+def labels(runs: xr.Dataset, names: Sequence[str] = ()) -> dict[str, Any]:
+    """Return the coordinates of these responses, of all requested ones by default.
+
+    Raises ValueError when one is not among the variables.
+    """
+    names = names or listed(runs, "responses")
+    if absent := [name for name in names if name not in runs.data_vars]:
+        raise ValueError(
+            f"the runs of study {runs.attrs.get('study', '?')!r} hold no {', '.join(absent)}, "
+            "which its attribute `responses` lists: solve the study again"
+        )
+    attributes = {
+        f"response_{key}": ("response", [str(runs[name].attrs.get(key, "")) for name in names])
+        for key in ("units", "long_name")
+    }
+    return {"response": ("response", list(names), {"long_name": "response"}), **attributes}
 
 
 @dataclass(frozen=True)

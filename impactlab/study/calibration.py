@@ -13,12 +13,11 @@ import xarray as xr
 from impactlab.analysis import surrogate
 from impactlab.analysis.measurements import Measurement
 from impactlab.analysis.posterior import calibrated
-from impactlab.analysis.responses import usable
 from impactlab.analysis.surrogate.stored import Surrogate
 from impactlab.files import read_netcdf, write_netcdf
 from impactlab.methods.distributions import Choice
 from impactlab.methods.hypercube import Hypercube
-from impactlab.methods.runs import in_order, listed
+from impactlab.methods.runs import in_order, listed, usable
 from impactlab.methods.sampling import RandomSample
 from impactlab.solver.contact import LAWS
 from impactlab.study import CALIBRATION, steps

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.analysis.responses import usable
 from impactlab.figures import access
+from impactlab.methods.runs import usable
 from impactlab.report.cautions import cautions
 from impactlab.report.console import print_responses
 from impactlab.solver.contact import LAWS

@@ -20,7 +20,7 @@ from impactlab import wings
 from impactlab.analysis.convergence.judgement import AxisVerdict, How, Judgement, judge
 from impactlab.analysis.convergence.least_squares import Expansion
 from impactlab.analysis.convergence.richardson import Behaviour
-from impactlab.analysis.responses import usable
+from impactlab.methods.runs import usable
 from impactlab.types import Floats
 from impactlab.verdicts import TOLERANCE, Verdict, flagged, verdict_variables
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from impactlab.analysis.responses import usable
+from impactlab.methods.runs import usable
 from impactlab.types import Floats
 from impactlab.verdicts import ROUND_OFF, TOLERANCE, Verdict, verdict_variables
 

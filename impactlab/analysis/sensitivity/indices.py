@@ -11,11 +11,10 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis import regimes
-from impactlab.analysis.responses import labels, usable
 from impactlab.analysis.sensitivity.imputation import imputed
 from impactlab.methods import INDICES, indices_of, sobol, verdict, verdict_name
 from impactlab.methods.record import BY_SAMPLES, PAIR, IndexVariable, Indices
-from impactlab.methods.runs import Sample, listed
+from impactlab.methods.runs import Sample, labels, listed, usable
 from impactlab.methods.verdict import SensitivityVerdict
 from impactlab.types import Floats
 from impactlab.verdicts import flagged

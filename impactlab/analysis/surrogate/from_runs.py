@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from impactlab.analysis.regimes import of_sample
-from impactlab.analysis.responses import labels, usable
 from impactlab.analysis.surrogate.chaos import Chaos, drawn, fewest_runs, fit, indices, influence
 from impactlab.analysis.surrogate.polynomials import Polynomials, orthonormal
 from impactlab.analysis.surrogate.validation import ErrorModel, leverage, predictivity
 from impactlab.methods import SAMPLES
 from impactlab.methods.distributions import DISTRIBUTIONS, distribution_of
-from impactlab.methods.runs import Sample, correlations, listed
+from impactlab.methods.runs import Sample, correlations, labels, listed, usable
 from impactlab.methods.sampling import RandomSample
 from impactlab.types import Floats
 from impactlab.verdicts import ROUND_OFF, Verdict, distinct, flagged

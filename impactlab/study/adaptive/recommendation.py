@@ -29,8 +29,8 @@ from scipy.linalg import hadamard
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.axes import NODES, without_limit
 from impactlab.analysis.convergence.judgement import numerical_uncertainty
-from impactlab.analysis.responses import usable
 from impactlab.methods.distributions import Choice, Distribution
+from impactlab.methods.runs import usable
 from impactlab.model.cost import node_steps
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import Value, flatten, with_values

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from impactlab import wings
-from impactlab.analysis.catalogue import ANALYSES
+from impactlab.analysis import ANALYSES
 from impactlab.methods import NO_DISTRIBUTION
 from impactlab.methods.distributions import Choice, Distribution
 from impactlab.methods.grid import Grid

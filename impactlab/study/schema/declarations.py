@@ -19,7 +19,7 @@ from pydantic import (
     create_model,
 )
 
-from impactlab.analysis.catalogue import ANALYSES
+from impactlab.analysis import ANALYSES
 from impactlab.methods import read_sampling
 from impactlab.methods.grid import Grid
 from impactlab.methods.sampling import RandomSample

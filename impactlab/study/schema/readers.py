@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, PlainValidator, create_model
 
-from impactlab.analysis.catalogue import ANALYSES
+from impactlab.analysis import ANALYSES
 from impactlab.methods import read_sampling
 from impactlab.methods.grid import Grid
 from impactlab.methods.sampling import RandomSample

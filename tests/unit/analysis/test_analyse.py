@@ -12,8 +12,8 @@ import pytest
 import xarray as xr
 
 import impactlab as il
+from impactlab.analysis import ANALYSES, AnalysisEntry
 from impactlab.analysis.analyse import analyse
-from impactlab.analysis.catalogue import ANALYSES, AnalysisEntry
 from impactlab.analysis.surrogate import chaos
 from impactlab.files import write_netcdf
 from impactlab.methods import estimators as method

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from SALib.analyze import sobol as sobol_analysis
 
-from impactlab.analysis.catalogue import ANALYSES
+from impactlab.analysis import ANALYSES
 from impactlab.fem3d.wing import SIZES
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS

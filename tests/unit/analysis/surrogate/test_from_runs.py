@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from impactlab.analysis import ANALYSES
 from impactlab.analysis.analyse import analyse
-from impactlab.analysis.catalogue import ANALYSES
 from impactlab.analysis.surrogate import analysis, applies
 
 from .conftest import ishigami

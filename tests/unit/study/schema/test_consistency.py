@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from impactlab.analysis.catalogue import ANALYSES
+from impactlab.analysis import ANALYSES
 from impactlab.methods import NO_DISTRIBUTION
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
