@@ -14,11 +14,12 @@ allows.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from impactlab.analysis.sensitivity.imputation import MOST_IMPUTED
 from impactlab.methods.estimators import half_width, leave_one_out
@@ -83,110 +84,59 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     """
     sample, names = Sample.of(runs), histories(runs)
     check(sample)
-    answers = [_of_history(sample, name) for name in names]
-    factors = list(sample.factors)
+    rows = [_of_history(sample, name) for name in names]
+    values = {key: np.stack([row[key] for row in rows]) for key in rows[0]}
     factor_label = "group of varied parameters" if sample.groups else "varied parameter"
     metadata = [attributes(name) for name in names]
     coordinates: dict[str, Any] = {
-        "parameter": ("parameter", factors, {"long_name": factor_label}),
+        "parameter": ("parameter", list(sample.factors), {"long_name": factor_label}),
         "time": runs["time"].variable,
         "history": ("history", names, {"long_name": "history"}),
         "history_units": ("history", [entry["units"] for entry in metadata]),
         "history_long_name": ("history", [entry["long_name"] for entry in metadata]),
     }
-    variables: dict[str, Any] = {
-        key: (dims, np.stack([answer[key] for answer in answers]), attrs)
-        for key, (dims, attrs) in _described(sample).items()
-    }
+    variables: dict[str, Any] = {}
+    for place, (order, (label, source)) in enumerate(_ORDERS.items()):
+        at_time, of_all = f"{label} Sobol index at each time", f"generalised {label} Sobol index"
+        for name, key, dims, long_name, estimator in (
+            (f"{order}_over_time", "over_time", ("time",), at_time, source),
+            (f"generalised_{order}", "generalised", (), of_all, f"{_2014}; {source}"),
+        ):
+            attrs = {"long_name": long_name, "units": "1", "estimator": estimator}
+            width = f"half-width of the {100 * sample.confidence:g} % interval of the {long_name}"
+            margin = attrs | {"long_name": width, "confidence": sample.confidence}
+            for ending, about in (("", attrs), ("_interval", margin)):
+                column = values[f"{key}{ending}"][..., place, :]
+                variables[f"{name}{ending}"] = ("history", *dims, "parameter"), column, about
+    for name, (dims, attrs) in _BESIDE.items():
+        variables[name] = dims, values[name], attrs
     dataset = xr.Dataset(variables, coordinates)
-    for key, dims, kind, label in (
-        ("time_verdict", ("history", "time"), TimeVerdict, "indices at each time"),
-        ("history_verdict", ("history",), HistoryVerdict, "generalised indices"),
-    ):
-        codes = xr.DataArray(np.stack([answer[key] for answer in answers]), dims=dims)
-        dataset[key] = flagged(codes, kind, f"verdict on the {label}")
+    for name, (dims, kind, subject) in _VERDICTS.items():
+        codes = xr.DataArray(values[name], dims=dims)
+        dataset[name] = flagged(codes, kind, f"verdict on the {subject}")
     return dataset
 
 
-def _described(sample: Sample) -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
-    """Return dimensions and attributes of all variables but the verdicts."""
-    settings = {"confidence": sample.confidence}
-    variables: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {}
-    for order, (label, source) in _ORDERS.items():
-        over = ("history", "time", "parameter"), f"{label} Sobol index at each time", source
-        generalised = (
-            ("history", "parameter"),
-            f"generalised {label} Sobol index",
-            f"{_2014}; {source}",
-        )
-        names = f"{order}_over_time", f"generalised_{order}"
-        for name, (dims, long_name, estimator) in zip(names, (over, generalised), strict=True):
-            attrs = {"long_name": long_name, "units": "1", "estimator": estimator}
-            width = f"half-width of the {100 * sample.confidence:g} % interval of the {long_name}"
-            variables[name] = dims, attrs
-            variables[f"{name}_interval"] = dims, attrs | {"long_name": width} | settings
-    by_time = ("history", "time")
-    comment = "in the unit that history_units states"
-    for name, label in (
-        ("history_mean", "mean over the runs of the two base samples, A and B"),
-        ("history_deviation", "standard deviation over the runs of A and B"),
-    ):
-        variables[name] = by_time, {"long_name": label, "comment": comment}
-    left = {"long_name": "base samples left out, for a run of theirs failed", "units": "1"}
-    return variables | {"base_samples_left_out": (("history",), left)}
-
-
-@dataclass(frozen=True)
-class Sums:
-    """Sums over the replicates of the sample, at some times.
-
-    Values are counted from `origin` (time,), one run's, so that their squares do not cancel.
-    replicates: (replicate, column, time): the number of base samples, then sobol.statistics.
-    """
-
-    replicates: Floats
-    origin: Floats
-
-    def parts(self, factors: int) -> tuple[Parts, Floats, Floats]:
-        """Return the parts of the indices, mean and number of base samples (time,).
-
-        The parts have an axis in front: of all base samples, then without each replicate.
-        """
-        sums = leave_one_out(self.replicates)
-        number = sums[0, 0]
-        with np.errstate(invalid="ignore", divide="ignore"):  # no base sample at all: NaN
-            means = np.moveaxis(sums[:, 1:] / sums[:, :1], 1, -1)
-        mean = self.origin + (means[0, :, 0] + means[0, :, 1]) / 2
-        return Parts.of(means, factors, self.origin), mean, number
-
-
-@dataclass(frozen=True)
-class Parts:
-    """Numerators and denominators of first and total orders, and variances over A and B.
-
-    numerators, denominators: (..., time, 2 factors). variance: (..., time), and where it is more
-    than round-off.
-    """
-
-    numerators: Floats
-    denominators: Floats
-    variance: Floats
-    varies: Any
-
-    @classmethod
-    def of(cls, means: Floats, factors: int, origin: Floats) -> Parts:
-        """Return the parts from means of the statistics, (..., time, column)."""
-        a, b, squared_a, squared_b = (means[..., column] for column in range(4))
-        squares = (squared_a + squared_b) / 2
-        variance = squares - ((a + b) / 2) ** 2
-        level = ROUND_OFF**2 * (origin + (a + b) / 2) ** 2
-        varies = variance > np.maximum(level, ROUND_OFF * squares)
-        return cls(*ratios(means, factors), variance, varies)
-
-    def at_times(self) -> Floats:
-        """Return the indices at each time, (..., time, 2 factors); NaN where nothing varies."""
-        denominators = np.where(self.varies[..., None], self.denominators, np.nan)
-        return np.asarray(self.numerators / denominators)
+_IN_UNITS = "in the unit that history_units states"
+_BESIDE: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {
+    "history_mean": (
+        ("history", "time"),
+        {"long_name": "mean over the runs of the two base samples, A and B", "comment": _IN_UNITS},
+    ),
+    "history_deviation": (
+        ("history", "time"),
+        {"long_name": "standard deviation over the runs of A and B", "comment": _IN_UNITS},
+    ),
+    "base_samples_left_out": (
+        ("history",),
+        {"long_name": "base samples left out, for a run of theirs failed", "units": "1"},
+    ),
+}
+"""Variables that are no index: dimensions and attributes."""
+_VERDICTS = {
+    "time_verdict": (("history", "time"), TimeVerdict, "indices at each time"),
+    "history_verdict": (("history",), HistoryVerdict, "generalised indices"),
+}
 
 
 def trapezoid(times: Floats) -> Floats:
@@ -195,11 +145,15 @@ def trapezoid(times: Floats) -> Floats:
     return np.asarray(0.5 * (np.append(steps, 0.0) + np.append(0.0, steps)))
 
 
-def sums(sample: Sample, name: str, good: Any, times: slice, most: int | None = None) -> Sums:
-    """Return the sums of a history at some times, read block by block.
+def sums(
+    sample: Sample, name: str, good: Any, times: slice, most: int | None = None
+) -> tuple[Floats, Floats]:
+    """Return sums of a history over the replicates of the sample at some times, and their origin.
 
-    good: base samples without a failed run, (base samples,). most: base samples that are read
-    together; the sums do not depend on it.
+    Sums: (replicate, column, time), of the number of base samples, then of saltelli.statistics, of
+    values less the origin (time,), one run's, so that their squares do not cancel. The history is
+    read block by block. good: base samples without a failed run, (base samples,). most: base
+    samples that are read together; the sums do not depend on it.
     """
     base, size = len(good), step(sample)
     column = sample.runs[name].variable.transpose("run", "time")[:, times]
@@ -214,7 +168,7 @@ def sums(sample: Sample, name: str, good: Any, times: slice, most: int | None = 
         rows = _statistics(block - origin, good[start:end], sample)
         for row, replicate in zip(rows, place[start:end], strict=True):
             total[replicate] += row
-    return Sums(total[np.bincount(place, good) > 0], origin)
+    return total[np.bincount(place, good) > 0], origin
 
 
 def _columns(sample: Sample) -> int:
@@ -222,7 +176,7 @@ def _columns(sample: Sample) -> int:
 
 
 def _statistics(block: Floats, good: Any, sample: Sample) -> Floats:
-    """Return the columns of `Sums`, (base samples, column, time), 0 of those to leave out."""
+    """Return the columns of `sums`, (base samples, column, time), 0 of those to leave out."""
     # block: (base samples, runs of one, time), in the order of the sample
     complete = np.isfinite(block).all(axis=1) & good[:, None]
     block = np.where(complete[:, None], block, 0.0)
@@ -231,79 +185,78 @@ def _statistics(block: Floats, good: Any, sample: Sample) -> Floats:
 
 
 def _of_history(sample: Sample, name: str) -> dict[str, Any]:
-    """Return the variables of one history, by name."""
+    """Return the values of one history by name; of indices, on (..., order, parameter)."""
     runs, factors = sample.runs, len(sample.factors)
     failed = (runs["status"].values & status_bits([])) != 0
     good = ~failed.reshape(-1, step(sample)).any(axis=1)
     times = np.asarray(runs["time"].values, float)
-    size, columns = len(times), _columns(sample)
-    variables: dict[str, Any] = {
-        "at_times": np.full((size, 2 * factors), np.nan),
-        "at_times_interval": np.full((size, 2 * factors), np.nan),
-        "history_mean": np.full(size, np.nan),
-        "history_deviation": np.full(size, np.nan),
-    }
-    weights, numbers = trapezoid(times), np.zeros(size)
+    weights, numbers = trapezoid(times), np.zeros(times.size)
+    mean, deviation = np.full((2, times.size), np.nan)
+    at_times, margins = np.full((2, times.size, 2 * factors), np.nan)
     integrals = np.zeros((1, 2, 2 * factors))  # (1 + replicates, part, 2 factors)
-    together = max(1, CELLS // (columns * min(ROWS, len(good))))
-    for start in range(0, size if good.any() else 0, together):
-        part = slice(start, min(start + together, size))
-        parts, mean, numbers[part] = sums(sample, name, good, part).parts(factors)
-        at_times = parts.at_times()
-        variables["at_times"][part] = at_times[0]
-        margins = half_width(at_times[1:], sample.confidence)
-        variables["at_times_interval"][part] = np.where(np.isnan(at_times[0]), np.nan, margins)
-        deviation = np.sqrt(np.where(parts.varies[0], parts.variance[0], 0.0))
-        variables["history_mean"][part], variables["history_deviation"][part] = mean, deviation
-        integrals = integrals + _integrated(parts, weights[part])
-    left_out = len(good) - int(numbers.min())
-    return _named(variables, integrals, left_out, sample)
-
-
-def _integrated(parts: Parts, weights: Floats) -> Floats:
-    """Return integrals over time of numerators and denominators, (..., 2, 2 factors)."""
-    together = np.stack([parts.numerators, parts.denominators], axis=-3)
-    varying = np.where(parts.varies[..., None, :, None], together, 0.0)
-    return np.asarray(np.einsum("...tf,t->...f", varying, weights))
-
-
-def _named(
-    variables: dict[str, Any], integrals: Floats, left_out: int, sample: Sample
-) -> dict[str, Any]:
-    """Return the variables of a history, with their verdicts."""
-    base, factors = sample.number("base_samples"), len(sample.factors)
+    together = max(1, CELLS // (_columns(sample) * min(ROWS, len(good))))
+    for start in range(0, times.size if good.any() else 0, together):
+        part = slice(start, min(start + together, times.size))
+        total, origin = sums(sample, name, good, part)
+        numbers[part] = total[:, 0].sum(axis=0)
+        without = leave_one_out(total)  # of all base samples, then without each replicate
+        with np.errstate(invalid="ignore", divide="ignore"):  # no base sample at all: NaN
+            means = np.moveaxis(without[:, 1:] / without[:, :1], 1, -1)
+        middle, variance, varies = _spread(means, origin)
+        parts = np.stack(ratios(means, factors), axis=-3)  # numerators, denominators
+        indices = parts[:, 0] / np.where(varies[..., None], parts[:, 1], np.nan)
+        widths = half_width(indices[1:], sample.confidence)
+        at_times[part], margins[part] = indices[0], np.where(np.isnan(indices[0]), np.nan, widths)
+        mean[part] = origin + middle[0]
+        deviation[part] = np.sqrt(np.where(varies[0], variance[0], 0.0))
+        varying = np.where(varies[:, None, :, None], parts, 0.0)
+        integrals = integrals + np.einsum("...tf,t->...f", varying, weights[part])
+    denominators = integrals[:, 1]
+    indices = integrals[:, 0] / np.where(denominators > 0, denominators, np.nan)  # NaN: constant
+    values: dict[str, Any] = {
+        "over_time": at_times.reshape(-1, 2, factors),
+        "over_time_interval": margins.reshape(-1, 2, factors),
+        "generalised": indices[0].reshape(2, factors),
+        "generalised_interval": half_width(indices[1:], sample.confidence).reshape(2, factors),
+        "history_mean": mean,
+        "history_deviation": deviation,
+    }
+    left_out, base = len(good) - int(numbers.min()), sample.number("base_samples")
     few = base - left_out < FEWEST or left_out > MOST_IMPUTED * base
-    numerators, denominators = integrals[:, 0], integrals[:, 1]
-    indices = numerators / np.where(denominators > 0, denominators, np.nan)  # NaN: nothing varies
-    generalised, margins = indices[0], half_width(indices[1:], sample.confidence)
-    at_times, at_margins = variables["at_times"], variables["at_times_interval"]
     if few:
-        for array in (generalised, margins, at_times, at_margins, variables["history_mean"]):
+        for array in values.values():
             array[...] = np.nan
-        variables["history_deviation"][...] = np.nan
-    undefined = np.isnan(at_times).any(axis=1)
-    codes = np.where(np.isnan(at_margins).any(axis=1), TimeVerdict.NO_INTERVAL, TimeVerdict.GIVEN)
+    return values | {"base_samples_left_out": left_out} | _verdicts(values, left_out, few)
+
+
+def _spread(means: Floats, origin: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """Return mean less origin and variance over A and B, and where this is more than round-off.
+
+    means: of the statistics, (..., time, column).
+    """
+    a, b, squared_a, squared_b = (means[..., column] for column in range(4))
+    middle, squares = (a + b) / 2, (squared_a + squared_b) / 2
+    variance = squares - middle**2
+    level = ROUND_OFF**2 * (origin + middle) ** 2
+    return middle, variance, variance > np.maximum(level, ROUND_OFF * squares)
+
+
+def _verdicts(values: Mapping[str, Floats], left_out: int, few: bool) -> dict[str, Any]:
+    """Return the verdicts on one history, and on its indices at each time."""
+    undefined, unbounded = (
+        np.isnan(values[name]).any(axis=(1, 2)) for name in ("over_time", "over_time_interval")
+    )
+    codes = np.where(unbounded, TimeVerdict.NO_INTERVAL, TimeVerdict.GIVEN)
     codes = np.where(undefined, TimeVerdict.CONSTANT, codes)
+    (first, total), margins = values["generalised"], values["generalised_interval"]
     holds = {
         HistoryVerdict.WIDE_INTERVALS: not (margins <= WIDE).all(),
-        HistoryVerdict.INCONSISTENT: inconsistent(
-            generalised[:factors], margins[:factors], generalised[factors:], margins[factors:]
-        ),
+        HistoryVerdict.INCONSISTENT: inconsistent(first, margins[0], total, margins[1]),
         HistoryVerdict.RUNS_LEFT_OUT: left_out > 0,
-        HistoryVerdict.CONSTANT: np.isnan(generalised).any(),
+        HistoryVerdict.CONSTANT: np.isnan(first).any() or np.isnan(total).any(),
         HistoryVerdict.TOO_FEW_RUNS: few,
     }
-    named: dict[str, Any] = {
-        "history_mean": variables["history_mean"],
-        "history_deviation": variables["history_deviation"],
-        "base_samples_left_out": left_out,
+    return {
         "time_verdict": np.full_like(codes, TimeVerdict.TOO_FEW_RUNS) if few else codes,
         "history_verdict": max((kind for kind, held in holds.items() if held), default=0),
     }
-    for position, order in enumerate(_ORDERS):
-        columns = slice(position * factors, (position + 1) * factors)
-        named[f"{order}_over_time"] = at_times[:, columns]
-        named[f"{order}_over_time_interval"] = at_margins[:, columns]
-        named[f"generalised_{order}"] = generalised[columns]
-        named[f"generalised_{order}_interval"] = margins[columns]
-    return named
