@@ -26,14 +26,14 @@ TEXTS = ("README.md", "docs/index.md", "docs/start.md")
 class Read(HTMLParser):
     """Ids, links that a reader may follow, and addresses that a browser loads."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path):
         super().__init__()
         self.ids: set[str] = set()
         self.links: list[str] = []
         self.loaded: list[str] = []
         self.feed(path.read_text(encoding="utf-8"))
 
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+    def handle_starttag(self, tag, attrs):
         given = {name: value or "" for name, value in attrs}
         self.ids |= {given[name] for name in ("id", "name") if name in given}
         followed = tag in ("a", "area") or (tag == "link" and given.get("rel") in ("next", "prev"))
@@ -45,12 +45,12 @@ class Read(HTMLParser):
 read = cache(Read)
 
 
-def test_there_is_a_site() -> None:
+def test_there_is_a_site():
     assert {page.name for page in PAGES} >= {"index.html", "api.html", "verification.html"}
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(SITE)))
-def test_links_lead_somewhere_and_nothing_else_is_loaded(page: Path) -> None:
+def test_links_lead_somewhere_and_nothing_else_is_loaded(page):
     broken = []
     for address in [*read(page).links, *read(page).loaded]:
         parts = urlsplit(address)
@@ -69,7 +69,7 @@ def test_links_lead_somewhere_and_nothing_else_is_loaded(page: Path) -> None:
 
 
 @pytest.mark.chromium
-def test_no_page_asks_for_anything_outside() -> None:
+def test_no_page_asks_for_anything_outside():
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     if CHROMIUM is None:
         pytest.skip("there is no command chromium")
@@ -95,12 +95,12 @@ def test_no_page_asks_for_anything_outside() -> None:
 @pytest.mark.parametrize(
     ("page", "figures"), [("one_impact", 2), ("sensitivity", 3), ("velocity", 1)]
 )
-def test_notebooks_show_their_figures(page: str, figures: int) -> None:
+def test_notebooks_show_their_figures(page, figures):
     text = (SITE / "tutorials" / f"{page}.html").read_text(encoding="utf-8")
     assert len(re.findall(r"<img [^>]*_images/", text)) == figures
 
 
-def test_every_study_has_a_page_with_answer_and_figures() -> None:
+def test_every_study_has_a_page_with_answer_and_figures():
     """Answers and figures of large studies are those that `make stored` keeps."""
     bare = set()
     for path in (ROOT / "studies").glob("*.yaml"):
@@ -111,14 +111,14 @@ def test_every_study_has_a_page_with_answer_and_figures() -> None:
     assert not bare
 
 
-def test_every_public_name_is_on_the_page_of_the_api() -> None:
+def test_every_public_name_is_on_the_page_of_the_api():
     names = {name for name in dir(il) if not isinstance(getattr(il, name), ModuleType)}
     names |= {f"plot.{name}" for name in il.plot.__all__}
     assert {f"impactlab.{name}" for name in names} <= read(SITE / "api.html").ids
 
 
 @pytest.mark.parametrize("text", [*TEXTS, "CONTRIBUTING.md", "results/README.md"])
-def test_links_of_texts_lead_somewhere(text: str) -> None:
+def test_links_of_texts_lead_somewhere(text):
     path = ROOT / text
     links = re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8"))
     inside = [link for link in links if not urlsplit(link).scheme]
@@ -138,7 +138,7 @@ LEFT_OUT = re.compile(r"verify|calibrate|witness(?!.* --(dry-run|deck))|\.\.\.")
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch):
     """A working folder with the studies, and what the site solved of two of them."""
     from matplotlib import pyplot
 
@@ -153,7 +153,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.parametrize("path", CODE, ids=lambda path: path.stem)
-def test_code_blocks_run(path: Path, folder: Path) -> None:
+def test_code_blocks_run(path, folder):
     """Python in one session; then the study as a file, and the commands on it."""
     from matplotlib import pyplot
 
@@ -173,7 +173,7 @@ def test_code_blocks_run(path: Path, folder: Path) -> None:
         assert done.returncode == 0, f"{words}: {done.stderr}"
 
 
-def test_a_notebook_shows_the_progress_on_one_line(tmp_path: Path) -> None:
+def test_a_notebook_shows_the_progress_on_one_line(tmp_path):
     """In a real kernel: the front end draws over what is before a carriage return."""
     nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
     code = f"""

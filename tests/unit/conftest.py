@@ -1,6 +1,5 @@
 """Stored studies made up after the data contract: small, quick, of plausible size, not physics."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -25,11 +24,9 @@ from impactlab.verification.comparisons import Comparison, Comparisons
 from impactlab.verification.finding import Curve, Finding, Outcome, Panel
 from impactlab.verification.outcomes import packed
 
-Study = tuple[xr.Dataset, xr.Dataset]
-
 
 @made_once
-def velocity_study() -> Study:
+def velocity_study():
     """Eight velocities by two contact laws, with histories and profiles."""
     varied = {
         "velocity": [0.25, 0.99, 2.0, 5.0, 7.5, 10.0, 15.0, 20.0],
@@ -41,7 +38,7 @@ def velocity_study() -> Study:
 
 
 @made_once
-def laws_study() -> Study:
+def laws_study():
     """Three velocities by eight contact laws, with histories; some runs beyond a law's range."""
     varied = {"velocity": [0.1, 1.0, 10.0], "contact": list(LAWS)}
     design = design_of(varied, study="laws", method="grid", histories=1, profiles=0)
@@ -51,7 +48,7 @@ def laws_study() -> Study:
 
 
 @made_once
-def shear_study() -> Study:
+def shear_study():
     """Two velocities by four depths, with and without shear: changes of 0.3 to 19 %."""
     varied = {
         "velocity": [0.25, 5.0],
@@ -67,7 +64,7 @@ def shear_study() -> Study:
 
 
 @made_once
-def material_study() -> Study:
+def material_study():
     """Yield stress by hardening by Young's modulus, responses alone."""
     varied = {
         "beam_yield_stress": [250e6, 345e6, 450e6, 600e6],
@@ -80,7 +77,7 @@ def material_study() -> Study:
 
 
 @made_once
-def discretisation_study() -> Study:
+def discretisation_study():
     """Nodes by points by rule at two velocities, with the verdicts of both convergences."""
     varied = {
         "velocity": [0.99, 15.0],
@@ -117,7 +114,7 @@ def discretisation_study() -> Study:
 
 
 @made_once
-def time_step_study() -> Study:
+def time_step_study():
     """Courant by scheme by nodes: errors of second order in the time step about each limit."""
     varied = {
         "courant": [0.2, 0.4, 0.8],
@@ -144,7 +141,7 @@ def time_step_study() -> Study:
 
 
 @made_once
-def sobol_study() -> Study:
+def sobol_study():
     """A sample of 256 runs in four parameters; number_of_contacts is constant."""
     random = np.random.default_rng(1)
     ranges = {
@@ -163,10 +160,10 @@ def sobol_study() -> Study:
 
 
 @pytest.fixture
-def failing() -> Callable[[xr.Dataset, dict[str, int]], xr.Dataset]:
+def failing():
     """A function that makes the runs at an index diverge: every variable NaN, status 1."""
 
-    def fail(runs: xr.Dataset, where: dict[str, int]) -> xr.Dataset:
+    def fail(runs, where):
         broken = runs.copy(deep=True)
         for name, array in broken.data_vars.items():
             array[where] = 1 if name == "status" else np.nan
@@ -176,7 +173,7 @@ def failing() -> Callable[[xr.Dataset, dict[str, int]], xr.Dataset]:
 
 
 @pytest.fixture
-def outcomes() -> list[Outcome]:
+def outcomes():
     """A check that passed, one with curves that failed in part, an error, and one of nothing."""
     good = Comparisons("at 1 m/s").relative("peak force", "N", 21064.7892, 21064.7221, 1e-4)
     good.absolute("deflection", "m", 1.2003e-3, 1.2e-3, 2e-6)
@@ -212,7 +209,7 @@ def outcomes() -> list[Outcome]:
 
 
 @pytest.fixture
-def findings(outcomes: list[Outcome]) -> xr.Dataset:
+def findings(outcomes):
     """The outcomes as findings.nc holds them."""
     given = ATTRIBUTES | {"study": "verification", "title": "The verification"}
     return packed(outcomes).assign_attrs(given | {"kernels_sha256": "1" * 64})

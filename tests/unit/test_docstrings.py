@@ -2,10 +2,8 @@
 
 import inspect
 import re
-from collections.abc import Callable, Iterator
 from importlib import import_module
 from types import ModuleType
-from typing import Any
 
 import pytest
 from sphinx.ext.napoleon import Config, NumpyDocstring
@@ -27,7 +25,7 @@ CONFIG = Config(napoleon_use_ivar=True)
 FIELD = re.compile(r"^:(param|type|ivar|vartype|raises|returns) ?([^:]*):(.*)$", re.MULTILINE)
 
 
-def _public() -> dict[str, Any]:
+def _public():
     """Return every public class, function, method and property by name.
 
     Sections of a study are for their constructors: their methods serve the package.
@@ -41,7 +39,7 @@ def _public() -> dict[str, Any]:
     return things | {f"plot.{name}": getattr(il.plot, name) for name in il.plot.__all__}
 
 
-def _methods(name: str, owner: type) -> Iterator[tuple[str, Any]]:
+def _methods(name, owner):
     for base in owner.__mro__:
         for member, value in vars(base).items():
             is_ours = base.__module__.startswith("impactlab") and not member.startswith("_")
@@ -54,13 +52,13 @@ def _methods(name: str, owner: type) -> Iterator[tuple[str, Any]]:
 PUBLIC = _public()
 
 
-def _raises(thing: Any) -> bool:
+def _raises(thing):
     """Return whether the code of a function, or of the checks of a class, has a `raise`."""
     code = vars(thing).get("__post_init__") if isinstance(thing, type) else thing
     return bool(code and re.search(r"^ +raise ", inspect.getsource(code), re.MULTILINE))
 
 
-def problems(thing: Callable[..., Any]) -> list[str]:
+def problems(thing):
     """Return the mismatches between a docstring and the signature of what it documents."""
     text = str(NumpyDocstring(inspect.getdoc(thing) or "", CONFIG))
     fields: dict[str, dict[str, str]] = {}
@@ -95,11 +93,11 @@ def problems(thing: Callable[..., Any]) -> list[str]:
 
 
 @pytest.mark.parametrize("name", PUBLIC)
-def test_docstrings_have_types_results_and_errors(name: str) -> None:
+def test_docstrings_have_types_results_and_errors(name):
     assert problems(PUBLIC[name]) == []
 
 
-def test_classes_that_functions_return_are_documented() -> None:
+def test_classes_that_functions_return_are_documented():
     annotations = [
         str(getattr(entry, "__annotations__", {}).get("return")) for entry in PUBLIC.values()
     ]
@@ -108,7 +106,7 @@ def test_classes_that_functions_return_are_documented() -> None:
     assert RETURNED.keys() <= words
 
 
-def _without_type(length: float, width: float = 1.0) -> float:
+def _without_type(length, width=1.0):
     """Return the area.
 
     Parameters
@@ -123,7 +121,7 @@ def _without_type(length: float, width: float = 1.0) -> float:
     return length * width
 
 
-def test_every_mismatch_is_a_problem() -> None:
+def test_every_mismatch_is_a_problem():
     assert problems(_without_type) == [
         "width: is not documented",
         "depth: is not a parameter",

@@ -19,27 +19,27 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 PINS = (ROOT / "constraints.txt").read_text().splitlines()
 
 
-def declared() -> list[Requirement]:
+def declared():
     extras = PROJECT["optional-dependencies"].values()
     lines = [*PROJECT["dependencies"], *(line for extra in extras for line in extra)]
     requirements = [Requirement(line) for line in lines]
     return [entry for entry in requirements if entry.name != "impactlab"]
 
 
-def test_constraints_hold_pins_and_nothing_else() -> None:
+def test_constraints_hold_pins_and_nothing_else():
     """No option, address or path of whoever made them."""
     pin = re.compile(r"[a-z0-9-]+==[\w.]+( ; [\w\s=<>!.']+)?")
     assert [line for line in PINS if not pin.fullmatch(line)] == []
 
 
 @pytest.mark.parametrize("requirement", declared(), ids=lambda entry: entry.name)
-def test_every_dependency_is_pinned_within_its_bounds(requirement: Requirement) -> None:
+def test_every_dependency_is_pinned_within_its_bounds(requirement):
     pins = {canonicalize_name(pin.name): pin.specifier for pin in map(Requirement, PINS)}
     (pinned,) = pins[canonicalize_name(requirement.name)]
     assert Version(pinned.version) in requirement.specifier
 
 
-def test_citation_and_changelog_agree_with_the_project() -> None:
+def test_citation_and_changelog_agree_with_the_project():
     citation = YAML(typ="safe").load(ROOT / "CITATION.cff")
     assert citation["version"] == PROJECT["version"]
     assert citation["license"] == PROJECT["license"]
@@ -48,12 +48,12 @@ def test_citation_and_changelog_agree_with_the_project() -> None:
     assert f"\n## {PROJECT['version']} " in (ROOT / "CHANGELOG.md").read_text()
 
 
-def test_conda_environment_has_the_same_python() -> None:
+def test_conda_environment_has_the_same_python():
     packages = YAML(typ="safe").load(ROOT / "environment.yaml")["dependencies"]
     assert f"python{PROJECT['requires-python']}" in packages
 
 
-def stand_in(version: str, fails_on: str) -> str:
+def stand_in(version, fails_on):
     """A python of another version, or one without some of its parts."""
     claim = f"import sys; sys.version_info = ({version.replace('.', ', ')})"
     return f"""#!/bin/sh
@@ -73,7 +73,7 @@ exec "{sys.executable}" -c "{claim}; $2"
     ],
     ids=["too old", "too new", "without ensurepip", "absent"],
 )
-def test_make_says_which_python_it_needs(tmp_path: Path, script: str | None, message: str) -> None:
+def test_make_says_which_python_it_needs(tmp_path, script, message):
     python, venv = tmp_path / "python", tmp_path / "venv"
     if script is not None:
         python.write_text(script)

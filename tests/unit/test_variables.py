@@ -4,7 +4,6 @@ import re
 import subprocess
 from datetime import UTC, datetime, timedelta
 from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -165,7 +164,7 @@ def source_tree(tmp_path, monkeypatch):
     return tmp_path
 
 
-def git(folder: Path, *words: str) -> str:
+def git(folder, *words):
     settings = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"]
     command = ["git", "-C", str(folder), *settings, *words]
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()

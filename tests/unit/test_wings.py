@@ -28,7 +28,7 @@ print(*(name for name in sys.modules if name.startswith(("impactlab.fem3d.", "im
 """
 
 
-def ran(folder: Path, program: str, package: Path) -> str:
+def ran(folder, program, package):
     """Return what a program prints that imports impactlab from the folder `package`."""
     paths = [str(package), str(CHECKOUT / "tests")]
     done = subprocess.run(
@@ -43,14 +43,14 @@ def ran(folder: Path, program: str, package: Path) -> str:
 
 
 @pytest.mark.slow
-def test_a_study_of_beams_imports_only_the_records_of_the_wings(tmp_path: Path) -> None:
+def test_a_study_of_beams_imports_only_the_records_of_the_wings(tmp_path):
     printed = ran(tmp_path, PROGRAM + LOADED, CHECKOUT)
     assert (tmp_path / "report.html").exists()
     assert printed.splitlines()[-1].split() == ["impactlab.fem3d.wing", "impactlab.paper.wing"]
 
 
 @pytest.mark.slow
-def test_the_core_works_without_the_folders_of_the_wings(tmp_path: Path) -> None:
+def test_the_core_works_without_the_folders_of_the_wings(tmp_path):
     wings_and_caches = shutil.ignore_patterns("fem3d", "paper", "__pycache__")
     shutil.copytree(CHECKOUT / "impactlab", tmp_path / "core/impactlab", ignore=wings_and_caches)
     shutil.copy(CHECKOUT / "CITATION.cff", tmp_path / "core")  # for the report
@@ -60,7 +60,7 @@ def test_the_core_works_without_the_folders_of_the_wings(tmp_path: Path) -> None
     assert "Peak force" in (tmp_path / "report.html").read_text("utf-8")
 
 
-def references() -> list[str]:
+def references():
     """Return all that the records of the wings refer to."""
     models = wings.models().values()
     parts = [reference for model in models for reference in model.references.values()]
@@ -68,5 +68,5 @@ def references() -> list[str]:
 
 
 @pytest.mark.parametrize("reference", references())
-def test_what_a_wing_adds_is_there(reference: str) -> None:
+def test_what_a_wing_adds_is_there(reference):
     assert resolve_name(reference)

@@ -3,7 +3,6 @@
 import sys
 import tracemalloc
 from collections.abc import Callable
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -36,7 +35,7 @@ AXES = {"rule": ["lobatto", "layers"], "nodes": [101, 51, 201], "points": [9, 3]
 
 
 @pytest.fixture
-def discretisation(grid_runs: Build) -> xr.Dataset:
+def discretisation(grid_runs):
     return grid_runs(
         AXES,
         peak_force=lambda rule, nodes, points: 1e4 * (1 + nodes**-2.0) * (1 + points**-4.0),
@@ -45,13 +44,13 @@ def discretisation(grid_runs: Build) -> xr.Dataset:
 
 
 @pytest.fixture
-def sample(sample_runs: Build) -> xr.Dataset:
+def sample(sample_runs):
     values = np.random.default_rng(3).normal(size=(2, 32 * 6))
     outputs = dict(zip(("peak_force", "impulse"), values, strict=True))
     return sample_runs(["velocity", "beam_depth"], 32, **outputs)
 
 
-def test_a_grid_study_gets_both_axes(discretisation: xr.Dataset) -> None:
+def test_a_grid_study_gets_both_axes(discretisation):
     found = analyse(discretisation)
     assert found["nodes_verdict"].dims == ("response", "rule", "points")
     assert found["points_verdict"].dims == ("response", "rule", "nodes")
@@ -60,23 +59,21 @@ def test_a_grid_study_gets_both_axes(discretisation: xr.Dataset) -> None:
     assert found.attrs == discretisation.attrs
 
 
-def test_a_sample_study_gets_indices(sample: xr.Dataset) -> None:
+def test_a_sample_study_gets_indices(sample):
     found = analyse(sample)
     assert found["first_order"].dims == ("response", "parameter")
     assert not [name for name in found if str(name).startswith(("nodes", "points"))]
     assert "run" not in found.dims
 
 
-def test_a_study_without_either_gets_its_responses_alone(grid_runs: Build) -> None:
+def test_a_study_without_either_gets_its_responses_alone(grid_runs):
     runs = grid_runs({"velocity": [1.0, 2.0]}, peak_force=lambda velocity: velocity)
     found = analyse(runs)
     assert found["response"].values.tolist() == ["peak_force"]
     assert not found.data_vars
 
 
-def test_a_new_analysis_is_one_line(
-    discretisation: xr.Dataset, sample: xr.Dataset, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_new_analysis_is_one_line(discretisation, sample, monkeypatch):
     """Studies can ask for it, are told where it is impossible, and it is made."""
     largest = xr.Dataset({"largest": discretisation["peak_force"].max()})
     module = SimpleNamespace(applies=lambda runs: "nodes" in runs.dims, analysis=lambda _: largest)
@@ -97,9 +94,7 @@ def test_a_new_analysis_is_one_line(
 
 
 @pytest.mark.parametrize("study", ["discretisation", "sample"])
-def test_through_netcdf(
-    study: str, request: pytest.FixtureRequest, stored: Callable[..., xr.Dataset]
-) -> None:
+def test_through_netcdf(study, request, stored):
     runs = request.getfixturevalue(study)
     found = analyse(runs)
     again = stored(found)
@@ -114,9 +109,7 @@ def test_through_netcdf(
     xr.testing.assert_identical(stored(analyse(stored(runs))).drop_attrs(), again.drop_attrs())
 
 
-def test_one_response_and_one_parameter_survive_netcdf(
-    sample_runs: Build, stored: Callable[..., xr.Dataset]
-) -> None:
+def test_one_response_and_one_parameter_survive_netcdf(sample_runs, stored):
     outputs = np.random.default_rng(5).normal(size=32 * 3)
     runs = sample_runs(["velocity"], 32, second_order=False, peak_force=outputs)
     found = analyse(stored(runs))
@@ -124,7 +117,7 @@ def test_one_response_and_one_parameter_survive_netcdf(
     assert found["parameter"].values.tolist() == ["velocity"]
 
 
-def test_every_variable_is_described(discretisation: xr.Dataset, sample: xr.Dataset) -> None:
+def test_every_variable_is_described(discretisation, sample):
     for runs in (discretisation, sample):
         for name, variable in analyse(runs).data_vars.items():
             assert variable.attrs["long_name"]
@@ -137,43 +130,41 @@ def test_every_variable_is_described(discretisation: xr.Dataset, sample: xr.Data
                 assert variable.attrs["units"] == "1"
 
 
-def test_coordinates_keep_their_attributes(discretisation: xr.Dataset) -> None:
+def test_coordinates_keep_their_attributes(discretisation):
     found = analyse(discretisation)
     for name in ("nodes", "points", "rule", "beam_span"):
         assert found[name].attrs == discretisation[name].attrs != {}
     assert found["response"].attrs["long_name"]
 
 
-def test_names_a_response_that_the_runs_do_not_hold(grid_runs: Build) -> None:
+def test_names_a_response_that_the_runs_do_not_hold(grid_runs):
     runs = grid_runs({"velocity": [1.0, 2.0]}, peak_force=lambda velocity: velocity)
     runs.attrs["responses"] = ["peak_force", "impulse"]
     with pytest.raises(ValueError, match="hold no impulse"):
         analyse(runs)
 
 
-def test_histories_are_left_alone(grid_runs: Build) -> None:
+def test_histories_are_left_alone(grid_runs):
     runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: nodes**-2.0)
     runs["contact_force"] = (("nodes", "time"), np.ones((3, 4)))
     found: Any = analyse(runs)
     assert "time" not in found.dims
 
 
-def test_only_the_wanted_analyses_are_made(discretisation: xr.Dataset) -> None:
+def test_only_the_wanted_analyses_are_made(discretisation):
     found = analyse(discretisation.assign_attrs(analyses=["convergence_in_points"]))
     assert "points_verdict" in found
     assert "nodes_verdict" not in found
 
 
-def test_a_sample_is_analysed_one_response_at_a_time(
-    sample_runs: Build, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_sample_is_analysed_one_response_at_a_time(sample_runs, tmp_path, monkeypatch):
     """Memory holds fewer than 6 columns; the responses and parameters of the runs are 12."""
     monkeypatch.setattr(saltelli, "_ROWS", 1024)
     monkeypatch.setattr(method, "_CELLS", 10_000)
     monkeypatch.setattr(chaos, "MOST_RUNS", 100)
     names, parameters = [f"y{at}" for at in range(6)], ["x0", "x1", "x2", "x3", "x4", "x5"]
 
-    def peak(base: int) -> float:
+    def peak(base):
         random = np.random.default_rng(1)
         outputs = {name: random.normal(size=base * 8) for name in names}
         runs = sample_runs(parameters, base, second_order=False, **outputs)

@@ -1,9 +1,6 @@
 """Distributions and exceedance probabilities of samples whose distributions are known."""
 
 import csv
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -23,12 +20,7 @@ from impactlab.methods.runs import Sample
 from impactlab.methods.saltelli import saltelli
 
 
-def runs_of(
-    inputs: Mapping[str, Any],
-    outputs: Mapping[str, Any],
-    limits: Mapping[str, float] | None = None,
-    **attrs: Any,
-) -> xr.Dataset:
+def runs_of(inputs, outputs, limits=None, **attrs):
     """Return a Latin hypercube, or what attrs say, with these columns."""
     size = len(next(iter(outputs.values())))
     given = {"study": "synthetic", "method": "delta", "seed": 1, "varied": list(inputs)} | attrs
@@ -41,7 +33,7 @@ def runs_of(
     return xr.Dataset(variables, {"run": np.arange(size)} | coordinates, given)
 
 
-def test_intervals_of_a_normal_cover_what_they_should() -> None:
+def test_intervals_of_a_normal_cover_what_they_should():
     """100 samples of 200 draws; each interval misses about 5 of them, exact ones fewer."""
     random, limit = np.random.default_rng(8), 1.3
     names = [f"y{at}" for at in range(100)]
@@ -74,7 +66,7 @@ def test_intervals_of_a_normal_cover_what_they_should() -> None:
     assert 0.9 < np.mean(inside) < 1.0
 
 
-def test_of_a_saltelli_sample_only_a_and_b_are_draws() -> None:
+def test_of_a_saltelli_sample_only_a_and_b_are_draws():
     drawn = saltelli(list("abc"), 64, True, 1)
     inputs = dict(zip("abc", drawn.T, strict=True))
     attrs = {"method": "sobol", "base_samples": 64, "second_order": 1, "replicates": 8}
@@ -94,9 +86,7 @@ def test_of_a_saltelli_sample_only_a_and_b_are_draws() -> None:
 
 
 @pytest.mark.parametrize(("above", "low", "high"), [(0, 0.0, 0.025), (90, 0.025, 1.0)])
-def test_no_draw_or_every_draw_above_the_limit_has_its_bound(
-    above: int, low: float, high: float
-) -> None:
+def test_no_draw_or_every_draw_above_the_limit_has_its_bound(above, low, high):
     """P(0 of n) = (1 - p)^n is 2.5 % at the upper end."""
     outputs = np.arange(90.0)
     found = analysis(runs_of({"x": outputs}, {"y": outputs}, {"y": 89.5 - above}))
@@ -107,7 +97,7 @@ def test_no_draw_or_every_draw_above_the_limit_has_its_bound(
     assert found["exceedance_distance"].isnull().all()
 
 
-def test_missing_answers_are_counted_and_may_have_any_value() -> None:
+def test_missing_answers_are_counted_and_may_have_any_value():
     random = np.random.default_rng(3)
     whole = random.normal(size=400)
     gaps = whole > 1.2  # as an impact that is too fast: just those above the limit
@@ -135,7 +125,7 @@ def test_missing_answers_are_counted_and_may_have_any_value() -> None:
     assert empty["mean"].isnull().all()
 
 
-def test_parameters_beyond_the_limit_of_a_known_sum() -> None:
+def test_parameters_beyond_the_limit_of_a_known_sum():
     """x + y > 1.5 has P = 1/8, with x distributed as (2 x - 1)²: farthest from x at 5/8."""
     random = np.random.default_rng(2)
     x, y, z = random.random((3, 40_000))
@@ -153,7 +143,7 @@ def test_parameters_beyond_the_limit_of_a_known_sum() -> None:
     assert found.sel(response="other")["exceedance_distance"].isnull().all()
 
 
-def test_a_parameter_that_does_not_matter_is_significant_as_often_as_stated() -> None:
+def test_a_parameter_that_does_not_matter_is_significant_as_often_as_stated():
     random = np.random.default_rng(5)
     inputs = {f"x{at}": random.random(300) for at in range(100)}
     found = analysis(runs_of(inputs, {"y": random.normal(size=300)}, {"y": 1.5}))
@@ -162,13 +152,13 @@ def test_a_parameter_that_does_not_matter_is_significant_as_often_as_stated() ->
 
 
 @pytest.mark.parametrize("method", NO_DISTRIBUTION)
-def test_designs_that_are_no_draws_have_no_distribution(method: str) -> None:
+def test_designs_that_are_no_draws_have_no_distribution(method):
     runs = runs_of({"x": np.arange(80.0)}, {"y": np.arange(80.0)}, method=method)
     assert "quantile" not in analyse(runs)
     assert "quantile" in analyse(runs.assign_attrs(method="pawn"))
 
 
-def test_the_table_has_every_number(tmp_path: Path) -> None:
+def test_the_table_has_every_number(tmp_path):
     random = np.random.default_rng(2)
     x = random.normal(size=200)
     runs = runs_of({"x": x, "z": random.normal(size=200)}, {"y": x, "w": -x}, {"y": 1.0})
@@ -187,9 +177,7 @@ def test_the_table_has_every_number(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("where", "share"), [("anywhere", 0.0), ("upper end", 1.0)])
-def test_draws_missing_at_some_values_of_a_parameter_carry_a_warning(
-    where: str, share: float, tmp_path: Path
-) -> None:
+def test_draws_missing_at_some_values_of_a_parameter_carry_a_warning(where, share, tmp_path):
     """The mean of x alone is too low where its upper end fails; a false alarm is one in twenty."""
     random, verdicts = np.random.default_rng(4), []
     for _ in range(40):

@@ -14,8 +14,8 @@ from impactlab.report.answer import answers
 Draw = Callable[[np.random.Generator, int], Any]
 
 
-def _mixture(*shares: float) -> Draw:
-    def values(rng: np.random.Generator, size: int) -> Any:
+def _mixture(*shares):
+    def values(rng, size):
         centres = np.array([0.155, 0.285, 0.39])
         return centres[rng.choice(len(shares), size, p=shares)] + 0.008 * rng.normal(size=size)
 
@@ -36,26 +36,26 @@ ONE_REGIME: dict[str, Draw] = {
 
 @pytest.mark.parametrize("size", [100, 1000])
 @pytest.mark.parametrize("name", ONE_REGIME)
-def test_one_regime_raises_few_false_alarms(name: str, size: int) -> None:
+def test_one_regime_raises_few_false_alarms(name, size):
     draws = (ONE_REGIME[name](np.random.default_rng(seed), size) for seed in range(100))
     assert sum(cuts(values).size > 0 for values in draws) <= 2
 
 
 @pytest.mark.parametrize("shares", [(0.86, 0.08, 0.06), (0.86, 0.14), (0.97, 0.03)])
-def test_regimes_are_found_and_counted(shares: tuple[float, ...]) -> None:
+def test_regimes_are_found_and_counted(shares):
     draw = _mixture(*shares)
     sizes = [cuts(draw(np.random.default_rng(seed), 1000)).size for seed in range(50)]
     assert sizes.count(len(shares) - 1) >= 48
 
 
 @pytest.mark.parametrize("points", [8, 24, 50])
-def test_smooth_curves_do_not_jump(points: int) -> None:
+def test_smooth_curves_do_not_jump(points):
     x = np.linspace(0.05, 1.0, points)
     for curve in (x**-0.5, x**3, np.sin(9 * x), np.maximum(x - 0.5, 0), np.tanh(4 * x - 2)):
         assert not jumps(x, curve).size
 
 
-def test_a_jump_is_where_it_is_and_missing_values_hide_it() -> None:
+def test_a_jump_is_where_it_is_and_missing_values_hide_it():
     x = np.array([0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 17.0, 18.0, 19.0, 20.0])
     y = x**-0.3 + 0.5 * (x > 17.5)
     assert jumps(x, y).tolist() == [7]
@@ -64,7 +64,7 @@ def test_a_jump_is_where_it_is_and_missing_values_hide_it() -> None:
 
 
 @pytest.fixture(scope="module")
-def runs() -> xr.Dataset:
+def runs():
     """Draws of two parameters; the contact lasts twice as long where the first is large."""
     x = np.random.default_rng(1).random((600, 2))
     duration = 1e-4 * (1.5 + 1.5 * (x[:, 0] > 0.8) + 0.1 * x[:, 1])
@@ -92,7 +92,7 @@ def runs() -> xr.Dataset:
     )
 
 
-def test_the_answer_tells_regimes_first_and_gives_no_indices(runs: xr.Dataset) -> None:
+def test_the_answer_tells_regimes_first_and_gives_no_indices(runs):
     analysis = analyse(runs)
     flags = analysis["sensitivity_verdict"].attrs["flag_meanings"].split()
     codes = analysis["sensitivity_verdict"].values
@@ -109,7 +109,7 @@ def test_the_answer_tells_regimes_first_and_gives_no_indices(runs: xr.Dataset) -
     assert second.startswith("Peak force ")
 
 
-def test_words_that_lead_from_one_regime_to_the_other_are_no_regimes(runs: xr.Dataset) -> None:
+def test_words_that_lead_from_one_regime_to_the_other_are_no_regimes(runs):
     words = np.where(runs["velocity"] > 0.8, "hertz", "stronge")
     choice = {"distribution": "choice", "values": ["hertz", "stronge"], "weights": [0.2, 0.8]}
     varied = {"varied": ["velocity", "beam_depth", "contact"]}
@@ -120,7 +120,7 @@ def test_words_that_lead_from_one_regime_to_the_other_are_no_regimes(runs: xr.Da
     assert of_runs(chosen.assign_coords(contact=("run", shuffled, choice)), "contact_duration").size
 
 
-def test_the_answer_tells_where_a_grid_jumps() -> None:
+def test_the_answer_tells_where_a_grid_jumps():
     velocity = np.arange(10.0, 22.0)
     duration = 1e-4 * (1.5 + 1.2 * (velocity > 17)) + 1e-6 * velocity
     runs = xr.Dataset(

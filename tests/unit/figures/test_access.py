@@ -1,7 +1,5 @@
 """Data access: missing runs with their reasons, and verdicts."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -10,15 +8,13 @@ from impactlab.figures import access
 from impactlab.figures.access import usable, verdict
 from impactlab.variables import STATUS_FLAGS
 
-Study = Any
 
-
-def test_nothing_is_said_when_nothing_is_missing(velocity_study: Study) -> None:
+def test_nothing_is_said_when_nothing_is_missing(velocity_study):
     runs, _ = velocity_study
     assert access.missing_note(runs, ["peak_force", "contact_force"]) == ""
 
 
-def test_missing_runs_are_counted_with_their_reasons(velocity_study: Study, failing: Any) -> None:
+def test_missing_runs_are_counted_with_their_reasons(velocity_study, failing):
     runs, _ = velocity_study
     broken = failing(failing(runs, {"velocity": 5, "contact": 1}), {"velocity": 6, "contact": 0})
     bit, words = STATUS_FLAGS["first_contact_unfinished"]
@@ -32,7 +28,7 @@ def test_missing_runs_are_counted_with_their_reasons(velocity_study: Study, fail
 
 
 @pytest.mark.parametrize("method", ["delta", "sobol"])
-def test_intervals_of_means_by_word_cover_the_means(method: str) -> None:
+def test_intervals_of_means_by_word_cover_the_means(method):
     random, covered = np.random.default_rng(3), []
     choice = {"distribution": "choice", "values": ["a", "b"]}
     for _ in range(200):
@@ -50,14 +46,14 @@ def test_intervals_of_means_by_word_cover_the_means(method: str) -> None:
     assert np.isnan(access.means_by_word(runs, "word", "y")["a"]).all()
 
 
-def test_a_gap_without_a_status_is_not_silent(velocity_study: Study) -> None:
+def test_a_gap_without_a_status_is_not_silent(velocity_study):
     runs, _ = velocity_study
     runs["peak_force"][0, 0] = np.nan
     assert access.UNEXPLAINED in access.missing_note(runs, ["peak_force"])
     assert access.UNEXPLAINED in access.missing_note(runs.drop_vars("status"), ["peak_force"])
 
 
-def test_status_overrules_a_number(velocity_study: Study) -> None:
+def test_status_overrules_a_number(velocity_study):
     runs, _ = velocity_study
     runs["status"][0, 0] = STATUS_FLAGS["first_contact_unfinished"][0]
     assert np.isnan(usable(runs, "contact_duration")[0, 0])
@@ -66,12 +62,12 @@ def test_status_overrules_a_number(velocity_study: Study) -> None:
     assert np.isnan(usable(runs, "contact_force")[0, 0]).all()
 
 
-def test_a_history_is_missing_only_when_all_of_it_is() -> None:
+def test_a_history_is_missing_only_when_all_of_it_is():
     history = xr.DataArray([[np.nan, 1.0], [np.nan, np.nan]], dims=("velocity", "time"))
     assert access.absent(xr.Dataset({"force": history}), "force").values.tolist() == [False, True]
 
 
-def test_flag_soundness_and_meaning(discretisation_study: Study) -> None:
+def test_flag_soundness_and_meaning(discretisation_study):
     _, analysis = discretisation_study
     good = verdict(analysis, "nodes_summary", "peak_force")
     bad = verdict(analysis, "nodes_summary", "peak_plastic_strain")
@@ -81,13 +77,13 @@ def test_flag_soundness_and_meaning(discretisation_study: Study) -> None:
     assert (bad.flag, bad.sound, bad.meaning) == ("divergent", False, "meaning of divergent")
 
 
-def test_no_verdict_where_there_is_none(discretisation_study: Study) -> None:
+def test_no_verdict_where_there_is_none(discretisation_study):
     _, analysis = discretisation_study
     assert verdict(analysis, "sensitivity_verdict", "peak_force") is None
     assert verdict(analysis, "nodes_summary", "no_such_response") is None
 
 
-def test_an_unknown_number_is_not_sound(discretisation_study: Study) -> None:
+def test_an_unknown_number_is_not_sound(discretisation_study):
     _, analysis = discretisation_study
     analysis["nodes_summary"].loc[{"response": "peak_force"}] = 99
     found = verdict(analysis, "nodes_summary", "peak_force")

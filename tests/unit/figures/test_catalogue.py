@@ -9,17 +9,13 @@ import samples
 import witnesses
 import xarray as xr
 from made_runs import made_once
-from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure as MplFigure
-from matplotlib.text import Text
 
 from impactlab.analysis import distribution
 from impactlab.fem3d.figures.witness import FIGURES
 from impactlab.figures import data, style
 from impactlab.figures.catalogue import CATALOGUE, applicable
 from impactlab.figures.distributions import exceedance
-from impactlab.figures.record import Figure
 from impactlab.figures.samples import scatter
 from impactlab.variables import RESPONSES
 
@@ -108,7 +104,7 @@ FEW = ["peak_force", "contact_duration", "peak_plastic_strain", "number_of_conta
 
 
 @pytest.fixture
-def sample_study() -> tuple[xr.Dataset, xr.Dataset]:
+def sample_study():
     """Nine parameters with long names, eight responses, failures, and every index there is."""
     runs = samples.sample(400, failures=9)
     runs.attrs |= {"limited": "peak_force", "limits": 35e3}
@@ -117,18 +113,18 @@ def sample_study() -> tuple[xr.Dataset, xr.Dataset]:
 
 
 @made_once
-def witness_study() -> tuple[xr.Dataset, xr.Dataset]:
+def witness_study():
     """Beam models beside a 3-D witness at three velocities."""
     return witnesses.against_velocity()
 
 
 @made_once
-def parts_study() -> tuple[xr.Dataset, xr.Dataset]:
+def parts_study():
     """The same with and without yielding."""
     return witnesses.taken_apart()
 
 
-def _study(request: pytest.FixtureRequest, study: str, name: str) -> tuple[xr.Dataset, xr.Dataset]:
+def _study(request, study, name):
     """Return the study of a case, or the first to which a figure without a study applies."""
     for each in [study] if study else EXPECTED:
         datasets: tuple[xr.Dataset, xr.Dataset] = request.getfixturevalue(each)
@@ -137,7 +133,7 @@ def _study(request: pytest.FixtureRequest, study: str, name: str) -> tuple[xr.Da
     pytest.fail(f"the figure {name} applies to none of the studies {list(EXPECTED)}")
 
 
-def _figure(name: str, runs: xr.Dataset) -> Figure:
+def _figure(name, runs):
     if name.startswith("scatter_"):
         return scatter(name.removeprefix("scatter_"))
     if name.startswith("exceedance_"):
@@ -145,13 +141,13 @@ def _figure(name: str, runs: xr.Dataset) -> Figure:
     return (CATALOGUE | FIGURES)[name]
 
 
-def _few(name: str, runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset:
+def _few(name, runs, analysis):
     """Return the runs with few responses where those are enough for the figure."""
     few = runs.drop_vars(set(runs) & set(RESPONSES) - set(FEW))
     return few if _figure(name, runs).applies(few, analysis) else runs
 
 
-def _laid_out(figure: MplFigure) -> MplFigure:
+def _laid_out(figure):
     FigureCanvasAgg(figure)
     with style.applied():
         figure.draw_without_rendering()
@@ -159,22 +155,18 @@ def _laid_out(figure: MplFigure) -> MplFigure:
 
 
 @pytest.mark.parametrize("study", EXPECTED)
-def test_figures_apply_to_the_studies_they_are_for(
-    study: str, request: pytest.FixtureRequest
-) -> None:
+def test_figures_apply_to_the_studies_they_are_for(study, request):
     datasets = request.getfixturevalue(study)
     assert set(applicable(*datasets)) & LISTED == EXPECTED[study]
 
 
-def test_nothing_applies_to_empty_datasets() -> None:
+def test_nothing_applies_to_empty_datasets():
     empty = xr.Dataset()
     assert applicable(empty, empty) == {}
 
 
 @pytest.mark.parametrize(("study", "name"), CASES)
-def test_a_figure_is_legible_at_paper_width(
-    study: str, name: str, request: pytest.FixtureRequest
-) -> None:
+def test_a_figure_is_legible_at_paper_width(study, name, request):
     runs, analysis = _study(request, study, name)
     if study != FIRST.get(name, ""):  # all panels are laid out for one study
         runs = _few(name, runs, analysis)
@@ -186,15 +178,13 @@ def test_a_figure_is_legible_at_paper_width(
     _assert_panels_and_legends_are_on_the_page_and_apart(drawn)
 
 
-def test_the_mean_history_is_data_beside_the_indices(
-    sample_study: tuple[xr.Dataset, xr.Dataset],
-) -> None:
+def test_the_mean_history_is_data_beside_the_indices(sample_study):
     curves = data.drawn(CATALOGUE["indices_over_time"].plot(*sample_study))
     means = [curve.curve for curve in curves if curve.panel.endswith(", mean")]
     assert means == ["mean"] * sample_study[1].sizes["history"]
 
 
-def _assert_labels_carry_units(drawn: MplFigure) -> None:
+def _assert_labels_carry_units(drawn):
     """An axis with ticks has its unit in its label, its title, or a label for all panels."""
     bars = [axes.get_xlabel() for axes in drawn.axes if hasattr(axes, "_colorbar")]
     shared = [drawn.get_supxlabel(), drawn.get_supylabel(), *bars]
@@ -205,7 +195,7 @@ def _assert_labels_carry_units(drawn: MplFigure) -> None:
             assert not label or label[0].isupper() or label.startswith("3-D")
 
 
-def _assert_text_is_large_enough_and_apart(drawn: MplFigure) -> None:
+def _assert_text_is_large_enough_and_apart(drawn):
     for axes in drawn.axes:
         for ticks in (axes.get_xticklabels(which="both"), axes.get_yticklabels(which="both")):
             shown = [label for label in ticks if label.get_text() and _inside(axes, label)]
@@ -218,7 +208,7 @@ def _assert_text_is_large_enough_and_apart(drawn: MplFigure) -> None:
             assert text.get_fontsize() >= 6
 
 
-def _assert_panels_and_legends_are_on_the_page_and_apart(drawn: MplFigure) -> None:
+def _assert_panels_and_legends_are_on_the_page_and_apart(drawn):
     page, boxes = drawn.bbox, [axes.get_tightbbox() for axes in drawn.axes]
     shared = [label.get_window_extent() for label in drawn.texts]
     for at, box in enumerate(boxes):
@@ -240,31 +230,29 @@ def _assert_panels_and_legends_are_on_the_page_and_apart(drawn: MplFigure) -> No
     ],
     ids=str,
 )
-def test_all_runs_failed_leaves_no_data_and_says_so(
-    study: str, name: str, request: pytest.FixtureRequest, failing: Any
-) -> None:
+def test_all_runs_failed_leaves_no_data_and_says_so(study, name, request, failing):
     runs, analysis = _study(request, study, name)
     everything = {dim: slice(None) for dim in runs["status"].dims}
     record, runs = _figure(name, runs), failing(_few(name, runs, analysis), everything)
     analysis = _undefined(analysis)
     figure = _laid_out(record.plot(runs, analysis))
     lines = [line for axes in figure.axes for line in axes.lines if not _guide(line.get_label())]
-    assert [line for line in lines if len(line.get_xdata()) > 2] == []  # type: ignore[arg-type]
+    assert [line for line in lines if len(line.get_xdata()) > 2] == []
     total: Any = runs["status"].size
     if name == "element_size_convergence":  # 3-D runs alone, whatever the beam models' nodes
         total = runs["status"].sel(beam_model="solid").isel(nodes=0).size
     assert f"{total} of {total} runs are missing" in record.caption(runs, analysis)
 
 
-def _undefined(analysis: xr.Dataset) -> xr.Dataset:
+def _undefined(analysis):
     return analysis.map(lambda array: array * np.nan if array.dtype.kind == "f" else array)
 
 
-def _guide(label: object) -> bool:
+def _guide(label):
     return str(label).startswith("_guide")
 
 
-def _inside(axes: Axes, label: Text) -> bool:
+def _inside(axes, label):
     box = axes.get_window_extent().padded(1)
     x, y = label.get_window_extent().get_points().mean(axis=0)
     return bool(box.x0 <= x <= box.x1 or box.y0 <= y <= box.y1) and label.get_visible()

@@ -1,25 +1,21 @@
-from typing import Any
-
 import numpy as np
 import pytest
 from drawings import curve, panel, words
-from matplotlib.axes import Axes
 
 from impactlab.figures.catalogue import CATALOGUE
 
-Study = Any
 NODES, POINTS = CATALOGUE["nodes_convergence"], CATALOGUE["points_convergence"]
 TIME, COST = CATALOGUE["time_step_convergence"], CATALOGUE["convergence_cost"]
 
 
 @pytest.fixture
-def study(discretisation_study: Study) -> Study:
+def study(discretisation_study):
     runs, analysis = discretisation_study
     kept = ["peak_force", "peak_plastic_strain", "number_of_contacts", "status"]
     return runs[kept], analysis
 
 
-def test_differences_are_to_the_extrapolated_value(study: Study) -> None:
+def test_differences_are_to_the_extrapolated_value(study):
     runs, analysis = study
     spacing, difference = curve(panel(NODES.plot(*study), "Peak force"), "15 m/s, 17 points")
     where = {"velocity": 15.0, "points": 17, "rule": "lobatto"}
@@ -31,7 +27,7 @@ def test_differences_are_to_the_extrapolated_value(study: Study) -> None:
     assert order == pytest.approx(2.0, abs=0.1)
 
 
-def test_without_an_extrapolated_value_the_finest_is_the_reference(study: Study) -> None:
+def test_without_an_extrapolated_value_the_finest_is_the_reference(study):
     runs, _ = study
     _, difference = curve(panel(NODES.plot(*study), "Peak plastic strain"), "15 m/s, 17 points")
     values = runs["peak_plastic_strain"].sel(velocity=15.0, points=17, rule="lobatto").values
@@ -39,7 +35,7 @@ def test_without_an_extrapolated_value_the_finest_is_the_reference(study: Study)
     assert np.isnan(difference[2])
 
 
-def test_the_legend_keeps_the_order_of_the_curves(study: Study) -> None:
+def test_the_legend_keeps_the_order_of_the_curves(study):
     runs, analysis = study
     first = {"response": "peak_force", "rule": "lobatto", "velocity": 0.99}
     analysis["points_error"].loc[first] = np.nan
@@ -49,14 +45,14 @@ def test_the_legend_keeps_the_order_of_the_curves(study: Study) -> None:
     assert labels[:2] == ["Gauss-Lobatto, 0.99 m/s", "Gauss-Lobatto, 15 m/s"]
 
 
-def test_elastic_runs_have_no_curve_of_plastic_strain(study: Study) -> None:
+def test_elastic_runs_have_no_curve_of_plastic_strain(study):
     axes = panel(NODES.plot(*study), "Peak plastic strain")
     labels = {str(line.get_label()) for line in axes.lines}
     curves = {label for label in labels if not label.startswith("_")}
     assert curves == {"15 m/s, 3 points", "15 m/s, 17 points"}
 
 
-def test_verdicts_are_written_and_warnings_stand_out(study: Study) -> None:
+def test_verdicts_are_written_and_warnings_stand_out(study):
     figure = NODES.plot(*study)
     good, bad = (
         panel(figure, "Peak force").texts[0],
@@ -68,18 +64,18 @@ def test_verdicts_are_written_and_warnings_stand_out(study: Study) -> None:
     assert words(strain) == ["not yet converged"]
 
 
-def test_the_guide_has_second_order(study: Study) -> None:
+def test_the_guide_has_second_order(study):
     x, y = curve(panel(NODES.plot(*study), "Peak force"), "_guide: second order")
     assert np.log(y[1] / y[0]) / np.log(x[1] / x[0]) == pytest.approx(2.0)
 
 
-def test_what_does_not_change_says_so(study: Study) -> None:
+def test_what_does_not_change_says_so(study):
     contacts = "Number of contacts"
     assert "same on every grid" in words(panel(NODES.plot(*study), contacts))
     assert "same for every number" in words(panel(POINTS.plot(*study), contacts))
 
 
-def test_one_value_is_not_the_same_everywhere(study: Study, failing: Any) -> None:
+def test_one_value_is_not_the_same_everywhere(study, failing):
     runs, analysis = study
     broken = failing(runs, {"nodes": slice(1, None)})
     assert "too few values" in words(panel(NODES.plot(broken, analysis), "Number of contacts"))
@@ -87,14 +83,14 @@ def test_one_value_is_not_the_same_everywhere(study: Study, failing: Any) -> Non
     assert "too few values" in words(panel(POINTS.plot(runs, analysis), "Number of contacts"))
 
 
-def test_round_off_is_no_difference(study: Study) -> None:
+def test_round_off_is_no_difference(study):
     runs, analysis = study
     analysis["points_error"].loc[{"response": "number_of_contacts", "points": 3}] = 1e-12
     axes = panel(POINTS.plot(runs, analysis), "Number of contacts")
     assert "same for every number" in words(axes)
 
 
-def test_failed_runs_leave_gaps_in_both(study: Study, failing: Any) -> None:
+def test_failed_runs_leave_gaps_in_both(study, failing):
     runs, analysis = study
     broken = failing(runs, {"nodes": 1, "points": 3, "rule": 0, "velocity": 1})
     _, difference = curve(panel(NODES.plot(broken, analysis), "Peak force"), "15 m/s, 17 points")
@@ -105,7 +101,7 @@ def test_failed_runs_leave_gaps_in_both(study: Study, failing: Any) -> None:
     assert "1 of 72 runs is missing" in NODES.caption(broken, analysis)
 
 
-def test_an_infinite_error_in_points_is_left_out(study: Study) -> None:
+def test_an_infinite_error_in_points_is_left_out(study):
     runs, analysis = study
     analysis["points_error"].loc[{"response": "peak_force", "points": 3}] = np.inf
     points, error = curve(
@@ -119,18 +115,18 @@ def test_an_infinite_error_in_points_is_left_out(study: Study) -> None:
     assert error[1] == pytest.approx(float(stored))
 
 
-def test_a_varied_span_makes_the_spacing_relative(study: Study) -> None:
+def test_a_varied_span_makes_the_spacing_relative(study):
     runs, analysis = study
     figure = NODES.plot(runs.assign_coords(beam_span=("velocity", [0.5, 0.78])), analysis)
     assert figure.get_supxlabel() == "Spacing of the nodes over the span (–)"
 
 
-def _orders(axes: Axes) -> list[str]:
+def _orders(axes):
     legend = axes.get_legend()
     return [text.get_text() for text in legend.get_texts()] if legend else []
 
 
-def test_the_order_is_drawn_through_the_errors_and_written(study: Study) -> None:
+def test_the_order_is_drawn_through_the_errors_and_written(study):
     runs, analysis = study
     analysis["nodes_observed_order"][:] = 1.5
     axes = panel(NODES.plot(runs, analysis), "Peak force")
@@ -141,7 +137,7 @@ def test_the_order_is_drawn_through_the_errors_and_written(study: Study) -> None
     assert errors.min() < y.min() < y.max() < 3 * errors.max()
 
 
-def test_an_assumed_order_is_in_brackets(study: Study) -> None:
+def test_an_assumed_order_is_in_brackets(study):
     runs, analysis = study
     where = {"response": "peak_force", "velocity": 15.0}
     analysis["nodes_extrapolated"].loc[where] = np.nan
@@ -155,7 +151,7 @@ def test_an_assumed_order_is_in_brackets(study: Study) -> None:
     assert _orders(axes) == ["p = 2.00"] * 2 + ["[p = 2]"] * 2
 
 
-def test_the_bar_reaches_up_to_the_uncertainty(study: Study) -> None:
+def test_the_bar_reaches_up_to_the_uncertainty(study):
     runs, analysis = study
     axes = panel(NODES.plot(runs, analysis), "Peak force")
     spacing, errors = curve(axes, "0.99 m/s, 3 points")
@@ -164,14 +160,14 @@ def test_the_bar_reaches_up_to_the_uncertainty(study: Study) -> None:
     np.testing.assert_allclose(y, [errors[-1], 2e-3])
 
 
-def test_an_infinite_uncertainty_has_no_bar(study: Study) -> None:
+def test_an_infinite_uncertainty_has_no_bar(study):
     runs, analysis = study
     analysis["nodes_uncertainty"][:] = np.inf
     lines = panel(NODES.plot(runs, analysis), "Peak force").lines
     assert "_bar" not in {line.get_label() for line in lines}
 
 
-def test_time_steps_at_fixed_nodes(time_step_study: Study) -> None:
+def test_time_steps_at_fixed_nodes(time_step_study):
     runs, analysis = time_step_study
     runs = runs[["peak_force", "status"]]
     axes = panel(TIME.plot(runs, analysis), "Peak force")
@@ -182,7 +178,7 @@ def test_time_steps_at_fixed_nodes(time_step_study: Study) -> None:
     assert not COST.applies(runs, analysis)
 
 
-def test_cost_against_error(study: Study) -> None:
+def test_cost_against_error(study):
     """Leapfrog's steps shrink with the spacing squared: work grows with the cube of the nodes."""
     runs, analysis = study
     axes = panel(COST.plot(runs, analysis), "Peak force")
@@ -192,7 +188,7 @@ def test_cost_against_error(study: Study) -> None:
     np.testing.assert_allclose(errors, same)
 
 
-def test_what_has_no_limit_by_design_is_drawn_as_it_is(study: Study) -> None:
+def test_what_has_no_limit_by_design_is_drawn_as_it_is(study):
     runs, analysis = study
     flags = {"flag_meanings": "converged not_convergent_by_design not_yet_converged"}
     verdict = 0 * analysis["nodes_observed_order"].fillna(0.0).astype(np.int8)
@@ -211,7 +207,7 @@ def test_what_has_no_limit_by_design_is_drawn_as_it_is(study: Study) -> None:
     assert warned in caption
 
 
-def test_an_uncertainty_without_a_difference_has_the_marker_of_its_curve(study: Study) -> None:
+def test_an_uncertainty_without_a_difference_has_the_marker_of_its_curve(study):
     """The finest value of the strain is its own reference: no cap stands alone."""
     runs, analysis = study
     analysis["nodes_uncertainty"].loc[{"response": "peak_plastic_strain"}] = 0.1

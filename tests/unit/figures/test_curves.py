@@ -1,36 +1,30 @@
 """Figures of histories, profiles and grids: what is drawn is what is stored."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 import xarray as xr
 from drawings import is_guide, panel, points
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.curves import broken, plan
 from impactlab.figures.scales import spread
 from impactlab.solver.contact import CONTACT_LAWS
 
-Study = Any
 
-
-def test_spread_holds_both_ends() -> None:
+def test_spread_holds_both_ends():
     assert spread(12, 6)[0] == 0
     assert spread(12, 6)[-1] == 11
     assert len(spread(12, 6)) == 6
     assert spread(2, 6) == [0, 1]
 
 
-def test_curves_never_exceed_the_limit(discretisation_study: Study) -> None:
+def test_curves_never_exceed_the_limit(discretisation_study):
     runs, _ = discretisation_study
     for most in (1, 2, 3, 6):
         assert 1 <= len(plan(runs, "peak_force", most=most).curves) <= most
 
 
-def test_two_dimensions_share_the_curves(material_study: Study) -> None:
+def test_two_dimensions_share_the_curves(material_study):
     runs, _ = material_study
     shown = plan(runs, "peak_force", prefer=["beam_yield_stress"]).shown
     assert shown == {"beam_yield_stress": [0, 2, 3], "beam_isotropic_hardening_modulus": [0, 2]}
@@ -38,7 +32,7 @@ def test_two_dimensions_share_the_curves(material_study: Study) -> None:
     assert alone == {"beam_yield_stress": [0, 1, 2, 3]}
 
 
-def test_every_dimension_gets_a_position(discretisation_study: Study) -> None:
+def test_every_dimension_gets_a_position(discretisation_study):
     runs, _ = discretisation_study
     chosen = plan(runs, "peak_force", along=["nodes"], prefer=["velocity", "points"])
     found = runs["peak_force"].isel(chosen.panels[0].where | chosen.curves[0].where)
@@ -47,13 +41,13 @@ def test_every_dimension_gets_a_position(discretisation_study: Study) -> None:
     assert len({curve.place for curve in chosen.curves}) == len(chosen.curves)
 
 
-def test_numerics_are_held_at_the_finest(discretisation_study: Study) -> None:
+def test_numerics_are_held_at_the_finest(discretisation_study):
     runs, _ = discretisation_study
     held = plan(runs.isel(nodes=[2, 0, 1]), "peak_force", prefer=["rule", "velocity"]).held
     assert held == {"nodes": 0, "points": 3}
 
 
-def test_note_names_what_is_shown_and_held(discretisation_study: Study) -> None:
+def test_note_names_what_is_shown_and_held(discretisation_study):
     runs, _ = discretisation_study
     note = plan(runs, "peak_force", along=["points"], prefer=["rule", "velocity"]).note(runs)
     assert "Gauss-Lobatto, Gauss-Legendre and uniform layers" in note
@@ -62,7 +56,7 @@ def test_note_names_what_is_shown_and_held(discretisation_study: Study) -> None:
 
 
 @pytest.mark.parametrize("panel", ["contact", None])
-def test_a_panel_dimension_gets_no_curves(velocity_study: Study, panel: str | None) -> None:
+def test_a_panel_dimension_gets_no_curves(velocity_study, panel):
     runs, _ = velocity_study
     chosen = plan(runs, "contact_force", panel=panel)
     assert len(chosen.panels) == (2 if panel else 1)
@@ -73,13 +67,13 @@ NONE = xr.Dataset()
 STRONGE = CONTACT_LAWS["stronge"].title
 
 
-def _curves(figure: Figure, title: str = "") -> dict[str, Line2D]:
+def _curves(figure, title=""):
     """Curves of the panel whose title starts so, by label; guides are none."""
     axes = panel(figure, title)
     return {str(line.get_label()): line for line in axes.lines if not is_guide(line)}
 
 
-def test_force_history_shows_the_stored_numbers(velocity_study: Study) -> None:
+def test_force_history_shows_the_stored_numbers(velocity_study):
     runs, _ = velocity_study
     stored = runs["contact_force"].sel(velocity=20.0, contact="stronge")
     for name, title in {"force_history": f"{STRONGE}, 20 m/s", "first_contact": "Stronge"}.items():
@@ -89,7 +83,7 @@ def test_force_history_shows_the_stored_numbers(velocity_study: Study) -> None:
         np.testing.assert_allclose(force, 1e-3 * stored)
 
 
-def test_one_curve_for_each_finite_run(velocity_study: Study, failing: Any) -> None:
+def test_one_curve_for_each_finite_run(velocity_study, failing):
     runs, _ = velocity_study
     broken = failing(runs, {"velocity": -1, "contact": 1})
     for name in ("first_contact", "force_indentation", "plastic_strain", "plastic_strain_depth"):
@@ -99,9 +93,7 @@ def test_one_curve_for_each_finite_run(velocity_study: Study, failing: Any) -> N
         assert f"No curve for 20 m/s, {STRONGE}." in CATALOGUE[name].caption(broken, NONE)
 
 
-def test_force_history_has_a_panel_a_run_and_leaves_failed_ones_empty(
-    velocity_study: Study, failing: Any
-) -> None:
+def test_force_history_has_a_panel_a_run_and_leaves_failed_ones_empty(velocity_study, failing):
     runs, _ = velocity_study
     broken = failing(runs, {"velocity": -1, "contact": 1})
     figure = CATALOGUE["force_history"].plot(broken, NONE)
@@ -112,7 +104,7 @@ def test_force_history_has_a_panel_a_run_and_leaves_failed_ones_empty(
     assert f"No curve for 20 m/s, {STRONGE}." in CATALOGUE["force_history"].caption(broken, NONE)
 
 
-def test_force_history_ends_with_the_last_contact(velocity_study: Study) -> None:
+def test_force_history_ends_with_the_last_contact(velocity_study):
     runs, _ = velocity_study
     runs["contact_force"][0, 0] = runs["contact_force"][0, 0].where(runs["time"] < 1e-4, 0.0)
     axes = panel(CATALOGUE["force_history"].plot(runs, NONE), "Hertz, 0.25 m/s")
@@ -121,7 +113,7 @@ def test_force_history_ends_with_the_last_contact(velocity_study: Study) -> None
     assert axes.figure.axes[1].get_xlim()[1] == pytest.approx(1.05 * longest, rel=0.1)
 
 
-def test_force_indentation_breaks_between_contacts(velocity_study: Study) -> None:
+def test_force_indentation_breaks_between_contacts(velocity_study):
     runs, _ = velocity_study
     curve = _curves(CATALOGUE["force_indentation"].plot(runs, NONE), "Hertz")["20 m/s"]
     depth, force = points(curve)
@@ -131,7 +123,7 @@ def test_force_indentation_breaks_between_contacts(velocity_study: Study) -> Non
     assert force[np.isfinite(force)][0] == 0.0
 
 
-def test_contact_duration_leaves_a_gap(velocity_study: Study, failing: Any) -> None:
+def test_contact_duration_leaves_a_gap(velocity_study, failing):
     runs, _ = velocity_study
     broken = failing(runs, {"velocity": 3, "contact": 0})
     curves = _curves(CATALOGUE["contact_duration"].plot(broken, NONE))
@@ -142,7 +134,7 @@ def test_contact_duration_leaves_a_gap(velocity_study: Study, failing: Any) -> N
     assert duration[0] == pytest.approx(1e3 * float(runs["contact_duration"][0, 0]))
 
 
-def test_the_guide_of_contact_duration_has_hertzs_slope(velocity_study: Study) -> None:
+def test_the_guide_of_contact_duration_has_hertzs_slope(velocity_study):
     runs, _ = velocity_study
     lines = panel(CATALOGUE["contact_duration"].plot(runs, NONE), "").lines
     (guide,) = (points(line) for line in lines if is_guide(line))
@@ -152,9 +144,7 @@ def test_the_guide_of_contact_duration_has_hertzs_slope(velocity_study: Study) -
     assert y[0] > 1e3 * float(runs["contact_duration"].max())
 
 
-def test_restitution_is_the_stored_one_and_leaves_a_gap(
-    velocity_study: Study, failing: Any
-) -> None:
+def test_restitution_is_the_stored_one_and_leaves_a_gap(velocity_study, failing):
     runs, _ = velocity_study
     broken = failing(runs, {"velocity": 3, "contact": 0})
     figure = CATALOGUE["restitution_velocity"].plot(broken, NONE)
@@ -169,7 +159,7 @@ def test_restitution_is_the_stored_one_and_leaves_a_gap(
     assert low <= 0.0 < 1.0 <= high
 
 
-def test_plastic_strain_is_the_largest_over_the_depth_in_percent(velocity_study: Study) -> None:
+def test_plastic_strain_is_the_largest_over_the_depth_in_percent(velocity_study):
     runs, _ = velocity_study
     figure = CATALOGUE["plastic_strain"].plot(runs, NONE)
     x, strain = points(_curves(figure, "Hertz")["15 m/s"])
@@ -178,7 +168,7 @@ def test_plastic_strain_is_the_largest_over_the_depth_in_percent(velocity_study:
     np.testing.assert_allclose(np.nan_to_num(strain), 100 * stored)
 
 
-def test_plastic_strain_marks_one_depth_and_the_papers_limit(velocity_study: Study) -> None:
+def test_plastic_strain_marks_one_depth_and_the_papers_limit(velocity_study):
     runs, _ = velocity_study
     figure = CATALOGUE["plastic_strain"].plot(runs, NONE)
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
@@ -190,7 +180,7 @@ def test_plastic_strain_marks_one_depth_and_the_papers_limit(velocity_study: Stu
     assert [float(y[0]) for x, y in guides if y[0] == y[1]] == [0.2]
 
 
-def test_elastic_velocities_are_named_not_drawn(velocity_study: Study, failing: Any) -> None:
+def test_elastic_velocities_are_named_not_drawn(velocity_study, failing):
     runs, _ = velocity_study
     broken = failing(runs, {"velocity": 0, "contact": 0})
     figure = CATALOGUE["plastic_strain"].plot(broken, NONE)
@@ -200,7 +190,7 @@ def test_elastic_velocities_are_named_not_drawn(velocity_study: Study, failing: 
     assert "1 of 16 runs is missing" in caption
 
 
-def test_an_elastic_study_says_so(velocity_study: Study) -> None:
+def test_an_elastic_study_says_so(velocity_study):
     runs, _ = velocity_study
     runs["equivalent_plastic_strain"] *= 0.0
     for name in ("plastic_strain", "plastic_strain_depth"):
@@ -208,7 +198,7 @@ def test_an_elastic_study_says_so(velocity_study: Study) -> None:
         assert figure.axes[0].texts[0].get_text() == "no plastic strain"
 
 
-def test_plastic_strain_over_the_depth_is_in_the_worst_section(velocity_study: Study) -> None:
+def test_plastic_strain_over_the_depth_is_in_the_worst_section(velocity_study):
     runs, _ = velocity_study
     figure = CATALOGUE["plastic_strain_depth"].plot(runs, NONE)
     strain, depth = points(_curves(figure, "Hertz")["20 m/s"])
@@ -219,7 +209,7 @@ def test_plastic_strain_over_the_depth_is_in_the_worst_section(velocity_study: S
     assert low > high  # downwards
 
 
-def test_histories_without_a_velocity_dimension(velocity_study: Study) -> None:
+def test_histories_without_a_velocity_dimension(velocity_study):
     runs, _ = velocity_study
     one = runs.isel(velocity=-1, contact=0)
     for name in (
@@ -234,7 +224,7 @@ def test_histories_without_a_velocity_dimension(velocity_study: Study) -> None:
         assert figure.legends == [] or name == "plastic_strain"  # its guides
 
 
-def test_parameter_effects_draws_every_response(material_study: Study) -> None:
+def test_parameter_effects_draws_every_response(material_study):
     runs, _ = material_study
     figure = CATALOGUE["parameter_effects"].plot(runs, NONE)
     stress, force = points(_curves(figure, "Peak force (kN)")["1000 MPa, 210 GPa"])
@@ -244,7 +234,7 @@ def test_parameter_effects_draws_every_response(material_study: Study) -> None:
     assert len(_curves(figure, "Restitution")) == 6
 
 
-def test_parameter_effects_leaves_gaps(material_study: Study, failing: Any) -> None:
+def test_parameter_effects_leaves_gaps(material_study, failing):
     runs, _ = material_study
     broken = failing(runs, {"beam_youngs_modulus": 0, "beam_yield_stress": 2})
     figure = CATALOGUE["parameter_effects"].plot(broken, NONE)
@@ -253,7 +243,7 @@ def test_parameter_effects_leaves_gaps(material_study: Study, failing: Any) -> N
     assert "3 of 24 runs are missing" in CATALOGUE["parameter_effects"].caption(broken, NONE)
 
 
-def test_first_contact_ends_with_the_longest_first_one(velocity_study: Study) -> None:
+def test_first_contact_ends_with_the_longest_first_one(velocity_study):
     runs, _ = velocity_study
     first = CATALOGUE["first_contact"].plot(runs, NONE).axes[0].get_xlim()[1]
     whole = CATALOGUE["force_history"].plot(runs, NONE).axes[0].get_xlim()[1]
@@ -262,7 +252,7 @@ def test_first_contact_ends_with_the_longest_first_one(velocity_study: Study) ->
     assert first < whole
 
 
-def test_a_jump_is_not_joined_and_a_smooth_curve_is() -> None:
+def test_a_jump_is_not_joined_and_a_smooth_curve_is():
     speed = np.array([15.0, 16.0, 17.0, 18.0, 19.0, 20.0])
     x, y = broken(speed, np.array([0.155, 0.155, 0.157, 0.276, 0.272, 0.27]))
     assert np.flatnonzero(np.isnan(y)).tolist() == [3]
@@ -270,12 +260,12 @@ def test_a_jump_is_not_joined_and_a_smooth_curve_is() -> None:
     assert broken(speed, speed**-0.2)[1].size == 6
 
 
-def test_guides_are_in_the_legend(velocity_study: Study) -> None:
+def test_guides_are_in_the_legend(velocity_study):
     legend = CATALOGUE["contact_duration"].plot(velocity_study[0], NONE).legends[0]
     assert [text.get_text() for text in legend.get_texts()] == ["Hertz", STRONGE, "slope −1/5"]
 
 
-def test_the_flight_after_the_last_contact_sets_no_scale(velocity_study: Study) -> None:
+def test_the_flight_after_the_last_contact_sets_no_scale(velocity_study):
     runs = velocity_study[0].copy(deep=True)
     for name in ("sphere_displacement", "indentation"):
         runs[name][..., -1] = -1.0  # a metre away

@@ -3,19 +3,17 @@
 import numpy as np
 import pytest
 import samples
-import xarray as xr
 from drawings import panel, words
 
 from impactlab.analysis import distribution
 from impactlab.figures import data
 from impactlab.figures.catalogue import CATALOGUE, applicable
 
-Study = tuple[xr.Dataset, xr.Dataset]
 LIMIT = 35e3
 
 
 @pytest.fixture
-def study() -> Study:
+def study():
     """A Latin hypercube of 400 runs with a limit, of which the fastest 40 failed."""
     runs = samples.sample(400, 4, failures=40)[["peak_force", "status"]]
     limit = {"limited": "peak_force", "limits": LIMIT}
@@ -23,7 +21,7 @@ def study() -> Study:
     return runs, distribution.analysis(runs)
 
 
-def test_the_curve_is_that_of_the_draws_within_its_band(study: Study) -> None:
+def test_the_curve_is_that_of_the_draws_within_its_band(study):
     runs, _ = study
     curve = next(data.drawn(CATALOGUE["cumulative_distributions"].plot(*study)))
     force = 1e-3 * runs["peak_force"].values
@@ -40,7 +38,7 @@ def test_the_curve_is_that_of_the_draws_within_its_band(study: Study) -> None:
     assert "40 of 400 runs are missing here" in caption
 
 
-def test_each_parameter_above_the_limit_beside_the_others(study: Study) -> None:
+def test_each_parameter_above_the_limit_beside_the_others(study):
     runs, analysis = study
     record = applicable(runs, analysis)["exceedance_peak_force"]
     figure = record.plot(runs, analysis)
@@ -59,13 +57,13 @@ def test_each_parameter_above_the_limit_beside_the_others(study: Study) -> None:
     ) in record.caption(runs, analysis)
 
 
-def test_without_a_draw_on_either_side_there_is_no_figure(study: Study) -> None:
+def test_without_a_draw_on_either_side_there_is_no_figure(study):
     runs, _ = study
     runs = runs.assign_attrs(limits=1e6)
     assert "exceedance_peak_force" not in applicable(runs, distribution.analysis(runs))
 
 
-def test_words_have_shares(study: Study) -> None:
+def test_words_have_shares(study):
     runs, _ = study
     words = np.where(runs["peak_force"] > LIMIT, "mjg", "hertz").astype("U7")
     words[:40] = "stronge"

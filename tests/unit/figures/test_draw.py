@@ -4,13 +4,10 @@ import csv
 import json
 import threading
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import matplotlib
 import numpy as np
 import pytest
-import xarray as xr
 from matplotlib.figure import Figure
 
 from impactlab.figures import catalogue, data, scales, style
@@ -18,19 +15,15 @@ from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.draw import draw_all, save
 from impactlab.files import read_netcdf, replaced
 
-Study = Any
-
 
 @pytest.fixture
-def study(velocity_study: Study) -> Study:
+def study(velocity_study):
     runs, analysis = velocity_study
     kept = ["contact_duration", "contact_force", "status"]
     return runs[kept].isel(velocity=[0, 3, 7], time=slice(None, None, 8)), analysis
 
 
-def test_writes_what_applies_with_captions_and_removes_what_no_longer_does(
-    study: Study, tmp_path: Path
-) -> None:
+def test_writes_what_applies_with_captions_and_removes_what_no_longer_does(study, tmp_path):
     runs, analysis = study
     folder = tmp_path / "new" / "figures"
     names = ["first_contact", "force_history", "contact_duration", "parameter_effects"]
@@ -50,10 +43,8 @@ def test_writes_what_applies_with_captions_and_removes_what_no_longer_does(
     assert other.exists()
 
 
-def test_a_figure_that_fails_is_named_and_leaves_the_old_files(
-    study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def broken(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+def test_a_figure_that_fails_is_named_and_leaves_the_old_files(study, tmp_path, monkeypatch):
+    def broken(runs, analysis):
         raise RuntimeError("no ink")
 
     duration = CATALOGUE["contact_duration"]
@@ -68,11 +59,11 @@ def test_a_figure_that_fails_is_named_and_leaves_the_old_files(
     assert not list(tmp_path.glob(".*"))
 
 
-def test_files_are_whole_or_as_they_were(tmp_path: Path) -> None:
+def test_files_are_whole_or_as_they_were(tmp_path):
     path = tmp_path / "file"
     path.write_text("old")
 
-    def half() -> None:
+    def half():
         with replaced(path) as temporary:
             temporary.write_text("half")
             raise KeyboardInterrupt
@@ -83,7 +74,7 @@ def test_files_are_whole_or_as_they_were(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_png_has_300_dots_an_inch_and_svg_no_date(study: Study, tmp_path: Path) -> None:
+def test_png_has_300_dots_an_inch_and_svg_no_date(study, tmp_path):
     svg, png = save(CATALOGUE["contact_duration"].plot(*study), tmp_path, "figure")
     width = int.from_bytes(png.read_bytes()[16:20], "big")
     assert width == pytest.approx(style.SINGLE / 25.4 * 300, abs=1)
@@ -92,22 +83,20 @@ def test_png_has_300_dots_an_inch_and_svg_no_date(study: Study, tmp_path: Path) 
     assert "<text" not in text  # paths: the same look with any fonts
 
 
-def test_the_style_does_not_leak(study: Study, tmp_path: Path) -> None:
+def test_the_style_does_not_leak(study, tmp_path):
     before = dict(matplotlib.rcParams)
     CATALOGUE["contact_duration"].plot(*study)
     assert dict(matplotlib.rcParams) == before
 
 
-def test_the_users_own_style_does_not_get_in(study: Study, tmp_path: Path) -> None:
+def test_the_users_own_style_does_not_get_in(study, tmp_path):
     plain = save(CATALOGUE["contact_duration"].plot(*study), tmp_path, "a")[0].read_bytes()
     with matplotlib.rc_context({"font.size": 30, "axes.facecolor": "pink", "text.color": "red"}):
         other = save(CATALOGUE["contact_duration"].plot(*study), tmp_path, "b")[0].read_bytes()
     assert other == plain
 
 
-def test_the_same_data_give_the_same_bytes_in_any_thread(
-    study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_same_data_give_the_same_bytes_in_any_thread(study, tmp_path, monkeypatch):
     shown = CATALOGUE["force_history"], CATALOGUE["contact_duration"]
     monkeypatch.setattr(catalogue, "ANSWERS", shown)
     folders = [tmp_path / str(i) for i in range(2)]
@@ -121,7 +110,7 @@ def test_the_same_data_give_the_same_bytes_in_any_thread(
     assert [path.read_bytes() for path in one] == [path.read_bytes() for path in two]
 
 
-def made_figure() -> Figure:
+def made_figure():
     fig, (left, right) = style.panels(2, columns=2, height=50)
     left.set_title("Curves", loc="left")
     left.set(xlabel="Time (ms)", ylabel="Force (kN)")
@@ -134,12 +123,12 @@ def made_figure() -> Figure:
     return fig
 
 
-def rows(path: Path) -> list[dict[str, str]]:
+def rows(path):
     with path.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
-def test_every_point_that_is_drawn_and_no_guide(tmp_path: Path) -> None:
+def test_every_point_that_is_drawn_and_no_guide(tmp_path):
     path, _ = data.save(made_figure(), tmp_path, "made_figure")
     found = rows(path)
     curve = [row for row in found if row["curve"] == "one"]
@@ -158,7 +147,7 @@ def test_every_point_that_is_drawn_and_no_guide(tmp_path: Path) -> None:
     assert len(found) == 6
 
 
-def test_netcdf_holds_the_same(tmp_path: Path) -> None:
+def test_netcdf_holds_the_same(tmp_path):
     paths = data.save(made_figure(), tmp_path, "made_figure")
     stored = read_netcdf(paths[1], "figure")
     assert stored["x"].values.tolist() == [float(row["x"]) for row in rows(paths[0])]
@@ -166,13 +155,13 @@ def test_netcdf_holds_the_same(tmp_path: Path) -> None:
     assert stored["curve_label"].values.tolist() == ["one", "", "first"]
 
 
-def test_a_figure_without_curves_leaves_no_files(tmp_path: Path) -> None:
+def test_a_figure_without_curves_leaves_no_files(tmp_path):
     data.save(made_figure(), tmp_path, "made_figure")
     assert data.save(Figure(), tmp_path, "made_figure") == []
     assert list(tmp_path.iterdir()) == []
 
 
-def test_bars_upwards(tmp_path: Path) -> None:
+def test_bars_upwards(tmp_path):
     fig, (ax,) = style.panels(1, columns=1, height=50)
     ax.hist([0.5, 1.5, 1.6], bins=[0.0, 1.0, 2.0])
     (drawn,) = data.drawn(fig)
@@ -191,18 +180,18 @@ def test_bars_upwards(tmp_path: Path) -> None:
         ([], "linear"),
     ],
 )
-def test_wide_positive_ranges_are_logarithmic(values: list[float], scale: str) -> None:
+def test_wide_positive_ranges_are_logarithmic(values, scale):
     axes = Figure().subplots()
     scales.fit(axes, "y", values)
     assert axes.get_yscale() == scale
     assert axes.get_xscale() == "linear"
 
 
-def test_short_logarithmic_axes_still_have_labels() -> None:
+def test_short_logarithmic_axes_still_have_labels():
     axes = Figure().subplots()
     axes.plot([1, 2], [0.24, 0.55])
     scales.logarithmic(axes, "y", [0.24, 0.55])
-    axes.figure.draw_without_rendering()  # type: ignore[union-attr]
+    axes.figure.draw_without_rendering()
     low, high = axes.get_ylim()
     shown = [
         label.get_text()
@@ -212,6 +201,6 @@ def test_short_logarithmic_axes_still_have_labels() -> None:
     assert shown == ["0.25", "0.3", "0.4", "0.5"]
 
 
-def test_positive_leaves_gaps() -> None:
+def test_positive_leaves_gaps():
     found = scales.positive([1.0, 0.0, -1.0, np.inf, np.nan, 1e-12], above=1e-9)
     np.testing.assert_array_equal(found, [1.0] + 5 * [np.nan])

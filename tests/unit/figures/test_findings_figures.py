@@ -3,14 +3,10 @@
 import json
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 from impactlab.figures import data, style
 from impactlab.figures import findings as drawn
@@ -18,23 +14,20 @@ from impactlab.figures.draw import draw_findings
 from impactlab.verification.finding import Curve, Finding, Panel, gravest_first
 from impactlab.verification.outcomes import packed
 
-Outcomes = Any
 MANY = [Curve(f"{n} nodes", np.arange(9.0), n + np.arange(9.0), n % 2 == 1) for n in range(9)]
 
 
-def _laid_out(figure: Figure) -> Figure:
+def _laid_out(figure):
     with style.applied():
         FigureCanvasAgg(figure).draw()
     return figure
 
 
-def _with_panels(outcomes: Outcomes, *panels: Panel) -> Any:
+def _with_panels(outcomes, *panels):
     return replace(outcomes[1], finding=Finding((), panels))
 
 
-def test_files_are_the_overview_and_each_check_with_curves(
-    findings: xr.Dataset, outcomes: Outcomes, tmp_path: Path
-) -> None:
+def test_files_are_the_overview_and_each_check_with_curves(findings, outcomes, tmp_path):
     written = [path.name for path in draw_findings(findings, tmp_path)]
     kinds = ("svg", "png", "csv", "nc")
     files = [f"{name}.{kind}" for name in ("overview", "bad") for kind in kinds]
@@ -47,7 +40,7 @@ def test_files_are_the_overview_and_each_check_with_curves(
     assert not list(tmp_path.glob("bad.*"))
 
 
-def test_every_comparison_is_a_point_and_the_failed_ones_look_different(outcomes: Outcomes) -> None:
+def test_every_comparison_is_a_point_and_the_failed_ones_look_different(outcomes):
     (axes,) = drawn.plot_overview(outcomes).axes
     found = [line for line in axes.lines if line.get_marker() not in ("None", "")]
     assert sum(len(line.get_xdata()) for line in found) == 21
@@ -63,7 +56,7 @@ def test_every_comparison_is_a_point_and_the_failed_ones_look_different(outcomes
     assert said == ["all 3", "3 of 18 failed", "error", "nothing"]
 
 
-def test_the_data_have_every_comparison_with_its_check(outcomes: Outcomes) -> None:
+def test_the_data_have_every_comparison_with_its_check(outcomes):
     curves = list(data.drawn(drawn.plot_overview(outcomes)))
     assert sum(curve.x.size for curve in curves) == 21
     assert sum(curve.x.size for curve in curves if curve.curve == "failed") == 3
@@ -75,13 +68,13 @@ def test_the_data_have_every_comparison_with_its_check(outcomes: Outcomes) -> No
     assert "all 3" not in text  # a note beside data, none in place of them
 
 
-def test_the_caption_counts_what_lies_at_the_edges(outcomes: Outcomes) -> None:
+def test_the_caption_counts_what_lies_at_the_edges(outcomes):
     assert "1 above 1000 or without a number at the right edge" in drawn.overview_caption(outcomes)
     assert "triangles" not in drawn.overview_caption(outcomes[:1])
 
 
 @pytest.mark.parametrize("kind", ["overview", "same legend", "other legends", "one", "many"])
-def test_nothing_overlaps_at_paper_width(kind: str, outcomes: Outcomes) -> None:
+def test_nothing_overlaps_at_paper_width(kind, outcomes):
     bad = outcomes[1]
     first, second = bad.finding.panels
     long = "a title that goes on and on, for it states every parameter of the case"
@@ -105,18 +98,18 @@ def test_nothing_overlaps_at_paper_width(kind: str, outcomes: Outcomes) -> None:
         assert box.x0 >= -1
         assert box.x1 <= figure.bbox.x1 + 1
         assert box.y1 <= figure.bbox.y1 + 1
-        assert not any(box.padded(-1).overlaps(other) for other in boxes[at + 1 :])  # type: ignore[arg-type]
+        assert not any(box.padded(-1).overlaps(other) for other in boxes[at + 1 :])
     for axes in figure.axes:
         height = axes.get_window_extent().height
         assert height > 20 * style.MILLIMETRE * figure.dpi
         for ticks in (axes.get_xticklabels(), axes.get_yticklabels()):
             labels = [label.get_window_extent() for label in ticks if label.get_text()]
-            inside = [b for b in labels if axes.get_tightbbox().padded(1).contains(b.x0, b.y0)]  # type: ignore[union-attr]
+            inside = [b for b in labels if axes.get_tightbbox().padded(1).contains(b.x0, b.y0)]
             ordered = sorted(inside, key=lambda b: (b.x0, b.y0))
             assert not any(left.overlaps(right) for left, right in pairwise(ordered))
 
 
-def test_ours_and_independent_curves_differ_without_colour(outcomes: Outcomes) -> None:
+def test_ours_and_independent_curves_differ_without_colour(outcomes):
     ours, independent = drawn.plot_curves(outcomes[1]).axes[0].lines
     assert (ours.get_linestyle(), independent.get_linestyle()) == ("-", "--")
     assert independent.get_color() == "black"
@@ -126,7 +119,7 @@ def test_ours_and_independent_curves_differ_without_colour(outcomes: Outcomes) -
     assert open_.get_markerfacecolor() == "none"
 
 
-def test_few_points_beside_a_dense_curve_are_not_joined(outcomes: Outcomes) -> None:
+def test_few_points_beside_a_dense_curve_are_not_joined(outcomes):
     x, dense = np.arange(5.0), np.linspace(0.0, 4.0, 99)
     curves = [Curve("solver", x, x**2), Curve("closed form", dense, dense**2, True)]
     panel = Panel("t", ("x", "m"), ("y", "m"), curves)
@@ -135,7 +128,7 @@ def test_few_points_beside_a_dense_curve_are_not_joined(outcomes: Outcomes) -> N
     assert [line.get_marker() for line in axes.lines] == ["o", ""]
 
 
-def test_axes_are_in_display_units_and_decades(outcomes: Outcomes) -> None:
+def test_axes_are_in_display_units_and_decades(outcomes):
     force, error = drawn.plot_curves(outcomes[1]).axes
     assert (force.get_xlabel(), force.get_ylabel()) == ("Time (ms)", "Contact force (kN)")
     assert np.max(force.lines[0].get_xdata()) == pytest.approx(1.0)
@@ -145,14 +138,14 @@ def test_axes_are_in_display_units_and_decades(outcomes: Outcomes) -> None:
     assert error.get_ylabel().replace("\n", " ").endswith("(–)")
 
 
-def test_a_curve_named_as_the_solvers_is_told_apart(outcomes: Outcomes) -> None:
+def test_a_curve_named_as_the_solvers_is_told_apart(outcomes):
     x = np.arange(3.0)
     panel = Panel("t", ("x", "m"), ("y", "m"), [Curve("steel", x, x), Curve("steel", x, x, True)])
     (axes,) = drawn.plot_curves(_with_panels(outcomes, panel)).axes
     assert [line.get_label() for line in axes.lines] == ["steel", "steel, independent"]
 
 
-def test_nothing_to_draw_is_said(outcomes: Outcomes) -> None:
+def test_nothing_to_draw_is_said(outcomes):
     x = np.arange(3.0)
     below = Panel("t", ("x", "m"), ("y", "m"), [Curve("a", x, -1.0 - x)], log=True)
     missing = Panel("t", ("x", "m"), ("y", "m"), [Curve("a", x, x * np.nan)])

@@ -1,7 +1,5 @@
 """Figures of Sobol indices, distributions and surrogates."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 from drawings import panel, words
@@ -12,16 +10,14 @@ from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.indices import pairs
 from impactlab.figures.samples import surrogate_validation
 
-Study = Any
-
 
 @pytest.fixture
-def study(sobol_study: Study) -> Study:
+def study(sobol_study):
     runs, analysis = sobol_study
     return runs[["peak_force", "number_of_contacts", "restitution", "status"]], analysis
 
 
-def test_bars_and_intervals_are_the_stored_ones(study: Study) -> None:
+def test_bars_and_intervals_are_the_stored_ones(study):
     _, analysis = study
     axes = panel(CATALOGUE["sobol_indices"].plot(*study), "Peak force")
     bars = [entry for entry in axes.containers if isinstance(entry, BarContainer)]
@@ -35,18 +31,18 @@ def test_bars_and_intervals_are_the_stored_ones(study: Study) -> None:
         np.testing.assert_allclose(halves, stored[f"{order}_interval"])
 
 
-def test_parameters_are_in_plain_words(study: Study) -> None:
+def test_parameters_are_in_plain_words(study):
     axes = CATALOGUE["sobol_indices"].plot(*study).axes[0]
     labels = [label.get_text() for label in axes.get_yticklabels()]
     assert labels[:2] == ["impact velocity", "yield stress of the beam"]
 
 
-def test_undefined_indices_say_why_and_draw_nothing(study: Study) -> None:
+def test_undefined_indices_say_why_and_draw_nothing(study):
     axes = panel(CATALOGUE["sobol_indices"].plot(*study), "Number of contacts")
     assert words(axes) == ["undefined:\nconstant"]
 
 
-def test_an_unsound_verdict_is_written_beside_numbers(study: Study) -> None:
+def test_an_unsound_verdict_is_written_beside_numbers(study):
     runs, analysis = study
     analysis["sensitivity_verdict"].loc[{"response": "restitution"}] = 2
     figure = CATALOGUE["sobol_indices"].plot(runs, analysis)
@@ -54,7 +50,7 @@ def test_an_unsound_verdict_is_written_beside_numbers(study: Study) -> None:
     assert words(panel(figure, "Peak force")) == []
 
 
-def test_pairs_are_shown_once_and_only_significant_ones_have_numbers(study: Study) -> None:
+def test_pairs_are_shown_once_and_only_significant_ones_have_numbers(study):
     runs, analysis = study
     written = words(panel(CATALOGUE["sobol_second_order"].plot(runs, analysis), "Peak force"))
     index, margin = (
@@ -66,7 +62,7 @@ def test_pairs_are_shown_once_and_only_significant_ones_have_numbers(study: Stud
     assert "−.01" not in written
 
 
-def test_pairs_of_a_symmetric_matrix_and_of_its_upper_half_are_the_same(study: Study) -> None:
+def test_pairs_of_a_symmetric_matrix_and_of_its_upper_half_are_the_same(study):
     _, analysis = study
     upper = analysis["second_order"].sel(response="peak_force")
     lower = upper.copy(data=upper.values.T)
@@ -76,13 +72,13 @@ def test_pairs_of_a_symmetric_matrix_and_of_its_upper_half_are_the_same(study: S
     assert np.isfinite(pairs(symmetric)).sum() == 6
 
 
-def test_without_intervals_no_pair_is_significant(study: Study) -> None:
+def test_without_intervals_no_pair_is_significant(study):
     runs, analysis = study
     figure = CATALOGUE["sobol_second_order"]
     assert not figure.applies(runs, analysis.drop_vars("second_order_interval"))
 
 
-def test_responses_without_a_significant_pair_are_left_out(study: Study) -> None:
+def test_responses_without_a_significant_pair_are_left_out(study):
     runs, analysis = study
     figure = CATALOGUE["sobol_second_order"]
     shown = len(figure.plot(runs, analysis).axes) - 1  # and the bar of colours
@@ -91,7 +87,7 @@ def test_responses_without_a_significant_pair_are_left_out(study: Study) -> None
     assert not figure.applies(runs, analysis)
 
 
-def test_histograms_count_every_finite_run(study: Study, failing: Any) -> None:
+def test_histograms_count_every_finite_run(study, failing):
     runs, analysis = study
     broken = failing(runs, {"run": slice(0, 56)})
     figure = CATALOGUE["response_distributions"].plot(broken, analysis)
@@ -102,7 +98,7 @@ def test_histograms_count_every_finite_run(study: Study, failing: Any) -> None:
     assert "56 of 256 runs are missing" in caption
 
 
-def test_the_shaded_range_holds_nine_runs_of_ten_about_the_median(study: Study) -> None:
+def test_the_shaded_range_holds_nine_runs_of_ten_about_the_median(study):
     runs, _ = study
     analysis = distribution.analysis(runs.assign_attrs(method="delta", responses=["peak_force"]))
     figure = CATALOGUE["response_distributions"].plot(runs, analysis)
@@ -114,7 +110,7 @@ def test_the_shaded_range_holds_nine_runs_of_ten_about_the_median(study: Study) 
     assert [box.x0, median[0], box.x1] == pytest.approx(expected)
 
 
-def test_few_values_get_a_bar_each(study: Study) -> None:
+def test_few_values_get_a_bar_each(study):
     runs, analysis = study
     runs["number_of_contacts"][:100] = 3.0
     runs["number_of_contacts"][100:110] = 5.0
@@ -126,7 +122,7 @@ def test_few_values_get_a_bar_each(study: Study) -> None:
     assert "Bars, for there are few values: number of contacts." in caption
 
 
-def test_a_value_that_most_runs_share_is_told_and_does_not_hide_the_rest(study: Study) -> None:
+def test_a_value_that_most_runs_share_is_told_and_does_not_hide_the_rest(study):
     runs, analysis = study
     runs["restitution"][:192] = 0.0
     figure = CATALOGUE["response_distributions"].plot(runs, analysis)
@@ -137,7 +133,7 @@ def test_a_value_that_most_runs_share_is_told_and_does_not_hide_the_rest(study: 
     assert "Mostly one value, drawn without it: restitution." in caption
 
 
-def test_points_are_runs_held_out_in_the_panels_unit(study: Study) -> None:
+def test_points_are_runs_held_out_in_the_panels_unit(study):
     runs, analysis = study
     axes = panel(surrogate_validation.plot(runs, analysis), "Peak force (kN)")
     x, y = next(line for line in axes.lines if line.get_label() == "runs held out").get_data()
@@ -147,7 +143,7 @@ def test_points_are_runs_held_out_in_the_panels_unit(study: Study) -> None:
     assert words(axes) == ["Q² = 0.9876"]
 
 
-def test_a_run_that_failed_is_no_point(study: Study, failing: Any) -> None:
+def test_a_run_that_failed_is_no_point(study, failing):
     runs, analysis = study
     broken = failing(runs, {"run": slice(0, 101)})
     axes = panel(surrogate_validation.plot(broken, analysis), "Peak force")
@@ -156,7 +152,7 @@ def test_a_run_that_failed_is_no_point(study: Study, failing: Any) -> None:
     assert "101 of 256 runs are missing" in surrogate_validation.caption(broken, analysis)
 
 
-def test_no_surrogate_says_why_and_an_unsound_one_warns(study: Study) -> None:
+def test_no_surrogate_says_why_and_an_unsound_one_warns(study):
     runs, analysis = study
     analysis["surrogate_verdict"].loc[{"response": "restitution"}] = 2
     figure = surrogate_validation.plot(runs, analysis)

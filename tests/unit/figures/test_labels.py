@@ -23,11 +23,11 @@ from impactlab.figures.labels import display
         (float("nan"), "missing"),
     ],
 )
-def test_numbers_are_typeset_to_four_digits(value: float, text: str) -> None:
+def test_numbers_are_typeset_to_four_digits(value, text):
     assert labels.number(value) == text
 
 
-def test_listing() -> None:
+def test_listing():
     assert [labels.listing(list(items)) for items in ("", "a", "ab", "abc")] == [
         "",
         "a",
@@ -36,12 +36,12 @@ def test_listing() -> None:
     ]
 
 
-def test_setting_shows_values_in_one_unit() -> None:
+def test_setting_shows_values_in_one_unit():
     stress = xr.DataArray([250e6, 345e6], dims="s", attrs={"units": "Pa"}, name="beam_yield_stress")
     assert labels.setting(stress, [0, 1]) == "yield stress of the beam = 250 and 345 MPa"
 
 
-def test_laws_and_rules_are_named_as_in_papers() -> None:
+def test_laws_and_rules_are_named_as_in_papers():
     laws = xr.DataArray(["jackson_green"], dims="contact", name="contact")
     rules = xr.DataArray(["lobatto"], dims="rule", name="rule")
     assert labels.values(laws, [0]) == ["Jackson and Green"]
@@ -51,13 +51,13 @@ def test_laws_and_rules_are_named_as_in_papers() -> None:
     assert labels.setting(commas, [0, 1]) == words
 
 
-def test_one_value_says_what_it_counts() -> None:
+def test_one_value_says_what_it_counts():
     assert labels.value(xr.DataArray([201], dims="nodes", name="nodes"), 0) == "201 nodes"
     assert labels.value(xr.DataArray([7], dims="run", name="run"), 0) == "run 7"
     assert labels.value(xr.DataArray([0.9], dims="courant", name="courant"), 0) == "0.9"
 
 
-def test_axis_of_a_pure_number_says_so() -> None:
+def test_axis_of_a_pure_number_says_so():
     assert labels.axis("restitution", "") == "Restitution (–)"
 
 
@@ -84,23 +84,23 @@ def test_axis_of_a_pure_number_says_so() -> None:
         ("furlong", [3.0], 3.0, "furlong"),
     ],
 )
-def test_value_and_symbol_agree(units: str, values: list[float], shown: float, symbol: str) -> None:
+def test_value_and_symbol_agree(units, values, shown, symbol):
     found = display(xr.DataArray(values, attrs={"units": units}, name="quantity"))
     assert found.symbol == symbol
     assert found(values)[-1] == pytest.approx(shown)
 
 
-def test_plastic_strain_is_in_percent() -> None:
+def test_plastic_strain_is_in_percent():
     found = display(xr.DataArray([0.002], attrs={"units": "1"}, name="peak_plastic_strain"))
     assert (found.symbol, float(found(0.002))) == ("%", pytest.approx(0.2))
 
 
-def test_missing_values_do_not_choose_the_unit() -> None:
+def test_missing_values_do_not_choose_the_unit():
     assert display(xr.DataArray([np.nan, 2e3], attrs={"units": "N"})).symbol == "kN"
     assert display(xr.DataArray([np.nan], attrs={"units": "N"})).symbol == "N"
 
 
-def test_an_axis_has_one_notation() -> None:
+def test_an_axis_has_one_notation():
     with style.applied():
         _, (ax,) = style.panels(1, columns=1, height=40)
     ax.plot([1, 2], [1e-4, 0.1])

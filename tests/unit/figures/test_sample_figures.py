@@ -1,7 +1,5 @@
 """Scatters, bars of other methods, convergence of indices and failures of a sample."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import samples
@@ -16,17 +14,15 @@ from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.data import alt
 from impactlab.figures.samples import conditional_mean, scatter
 
-Study = tuple[xr.Dataset, xr.Dataset]
-
 
 @pytest.fixture
-def study() -> Study:
+def study():
     """Two responses, four parameters, the fastest 40 of 400 runs failed."""
     runs = samples.sample(400, 4, failures=40)[["peak_force", "remote_plastic_strain", "status"]]
     return runs, samples.indices(runs)
 
 
-def test_the_conditional_mean_of_a_known_law() -> None:
+def test_the_conditional_mean_of_a_known_law():
     random = np.random.default_rng(0)
     x = random.uniform(0.0, 1.0, 40_000)
     y = x**2 + random.normal(0.0, 0.1, x.size)
@@ -36,14 +32,14 @@ def test_the_conditional_mean_of_a_known_law() -> None:
     np.testing.assert_allclose(mean, middle**2 + 0.05**2 / 12, atol=4 * 0.1 / np.sqrt(2000))
 
 
-def test_runs_of_one_value_share_a_bin() -> None:
+def test_runs_of_one_value_share_a_bin():
     x = np.repeat([0.0, 1 / 3, 2 / 3, 1.0], 100)  # the levels of Morris
     middle, mean = conditional_mean(x, 2 * x)
     np.testing.assert_allclose(middle, [0.0, 1 / 3, 2 / 3, 1.0])
     np.testing.assert_allclose(mean, 2 * middle)
 
 
-def test_points_are_a_picture_and_the_file_stays_small(tmp_path: Path) -> None:
+def test_points_are_a_picture_and_the_file_stays_small(tmp_path):
     runs = samples.sample(20_000, 3)[["peak_force", "status"]]
     figure = scatter("peak_force").plot(runs, xr.Dataset())
     points = [line for ax in figure.axes for line in ax.lines if line.get_label() == "_runs"]
@@ -55,7 +51,7 @@ def test_points_are_a_picture_and_the_file_stays_small(tmp_path: Path) -> None:
     assert "2000 of the 20000 runs" in scatter("peak_force").caption(runs, xr.Dataset())
 
 
-def test_noise_is_pale_and_the_dummy_a_line(study: Study) -> None:
+def test_noise_is_pale_and_the_dummy_a_line(study):
     axes = panel(CATALOGUE["sobol_indices"].plot(*study), "Peak force")
     for bars in (entry for entry in axes.containers if isinstance(entry, BarContainer)):
         assert [bar.get_alpha() for bar in bars.patches] == [None, None, 0.45, 0.45]
@@ -63,7 +59,7 @@ def test_noise_is_pale_and_the_dummy_a_line(study: Study) -> None:
     assert 0.03 in np.round(floors, 6)
 
 
-def test_bars_are_told_by_the_name_of_their_parameter(study: Study) -> None:
+def test_bars_are_told_by_the_name_of_their_parameter(study):
     first = next(data.drawn(CATALOGUE["delta_indices"].plot(*study)))
     assert first.category[:2] == ["impact velocity", "yield stress of the beam"]
     delta = study[1]["delta"]
@@ -71,13 +67,13 @@ def test_bars_are_told_by_the_name_of_their_parameter(study: Study) -> None:
     assert first.x.tolist() == delta.sel(response="peak_force").values[largest_first].tolist()
 
 
-def test_signed_coefficients_have_the_dummy_on_both_sides(study: Study) -> None:
+def test_signed_coefficients_have_the_dummy_on_both_sides(study):
     axes = panel(CATALOGUE["regression_indices"].plot(*study), "Peak force")
     ends = {round(float(s[0][0]), 6) for line in axes.collections for s in line.get_segments()}
     assert {-0.03, 0.03} <= ends
 
 
-def test_morris_in_the_unit_of_the_response(study: Study) -> None:
+def test_morris_in_the_unit_of_the_response(study):
     _, analysis = study
     figure = CATALOGUE["morris_plane"].plot(*study)
     axes = panel(figure, "Peak force")
@@ -88,14 +84,14 @@ def test_morris_in_the_unit_of_the_response(study: Study) -> None:
     np.testing.assert_allclose([[p.x[0], p.y[0]] for p in points], expected)
 
 
-def test_a_group_alone_has_no_place_among_morris_spreads(study: Study) -> None:
+def test_a_group_alone_has_no_place_among_morris_spreads(study):
     runs, analysis = study
     spread = analysis["morris_sigma"]
     figure = CATALOGUE["morris_plane"].plot(runs, analysis.assign(morris_sigma=np.nan * spread))
     assert "no finite values" in {text.get_text() for text in panel(figure, "Peak force").texts}
 
 
-def test_convergence_of_the_indices_is_the_stored_one(study: Study) -> None:
+def test_convergence_of_the_indices_is_the_stored_one(study):
     _, analysis = study
     axes = panel(CATALOGUE["total_order_convergence"].plot(*study), "Peak force")
     stored = analysis["total_order_by_samples"].sel(response="peak_force")
@@ -104,7 +100,7 @@ def test_convergence_of_the_indices_is_the_stored_one(study: Study) -> None:
     assert "up to all 32 base samples" in CATALOGUE["total_order_convergence"].caption(*study)
 
 
-def test_the_bands_reach_one_interval_to_either_side(study: Study) -> None:
+def test_the_bands_reach_one_interval_to_either_side(study):
     _, analysis = study
     axes = panel(CATALOGUE["total_order_convergence"].plot(*study), "Peak force")
     stored = analysis.sel(response="peak_force")
@@ -117,7 +113,7 @@ def test_the_bands_reach_one_interval_to_either_side(study: Study) -> None:
         assert set(np.round(corners, 9)) == set(np.round([*(y - margin), *(y + margin)], 9))
 
 
-def test_the_share_of_failures_rises_where_they_are(study: Study) -> None:
+def test_the_share_of_failures_rises_where_they_are(study):
     figure = CATALOGUE["failure_shares"].plot(*study)
     velocity, stress, *_ = data.drawn(figure)
     np.testing.assert_allclose(velocity.y, 9 * [0.0] + [100.0])
@@ -125,7 +121,7 @@ def test_the_share_of_failures_rises_where_they_are(study: Study) -> None:
     assert "40 of 400 runs failed" in CATALOGUE["failure_shares"].caption(*study)
 
 
-def test_the_map_is_over_the_parameter_that_tells_failures(study: Study) -> None:
+def test_the_map_is_over_the_parameter_that_tells_failures(study):
     runs, _ = study
     caption = CATALOGUE["failure_map"].caption(*study)
     assert "impact velocity 1.00" in caption
@@ -142,7 +138,7 @@ def test_the_map_is_over_the_parameter_that_tells_failures(study: Study) -> None
 
 
 @pytest.fixture
-def of_words(study: Study) -> xr.Dataset:
+def of_words(study):
     """The runs, a parameter more: two contact laws, of which one fails three times as often."""
     runs, _ = study
     failed = np.isnan(runs["peak_force"].values)
@@ -153,7 +149,7 @@ def of_words(study: Study) -> xr.Dataset:
     return runs.assign_attrs(varied=[*runs.attrs["varied"], "contact"])
 
 
-def test_words_are_categories_with_names(of_words: xr.Dataset) -> None:
+def test_words_are_categories_with_names(of_words):
     figure = scatter("peak_force").plot(of_words, xr.Dataset())
     ax = figure.axes[4]
     assert [text.get_text() for text in ax.get_xticklabels()] == ["MJG", "Kogut-Etsion"]
@@ -167,7 +163,7 @@ def test_words_are_categories_with_names(of_words: xr.Dataset) -> None:
     assert ax.get_xlabel() == "Contact law"
 
 
-def test_failures_are_shared_out_among_words(of_words: xr.Dataset) -> None:
+def test_failures_are_shared_out_among_words(of_words):
     *_, law = data.drawn(CATALOGUE["failure_shares"].plot(of_words, xr.Dataset()))
     failed = np.isnan(of_words["peak_force"])
     share = 100 * failed.groupby("contact").mean().sel(contact=["mjg", "kogut_etsion"])
@@ -179,13 +175,13 @@ def test_failures_are_shared_out_among_words(of_words: xr.Dataset) -> None:
     CATALOGUE["failure_map"].plot(of_words, xr.Dataset())
 
 
-def test_without_failures_there_is_no_map() -> None:
+def test_without_failures_there_is_no_map():
     runs = samples.sample(64)
     assert not CATALOGUE["failure_map"].applies(runs, xr.Dataset())
     assert not CATALOGUE["failure_shares"].applies(runs, xr.Dataset())
 
 
-def test_alternative_texts_tell_what_is_largest(study: Study) -> None:
+def test_alternative_texts_tell_what_is_largest(study):
     bars = alt(CATALOGUE["sobol_indices"].plot(*study))
     assert bars.startswith("Peak force: first order: largest for impact velocity (0.711); total")
     cells = alt(CATALOGUE["sobol_second_order"].plot(*study))
@@ -194,14 +190,14 @@ def test_alternative_texts_tell_what_is_largest(study: Study) -> None:
     assert lines.startswith("Peak force: highest of 4: impact velocity: ")
 
 
-def test_an_empty_panel_is_told(study: Study) -> None:
+def test_an_empty_panel_is_told(study):
     runs, analysis = study
     for name in ("first_order", "total_order"):
         analysis[name].loc[{"response": "peak_force"}] = np.nan
     assert "Peak force: undefined: usable." in alt(CATALOGUE["sobol_indices"].plot(runs, analysis))
 
 
-def test_each_order_cites_its_own_estimator(study: Study) -> None:
+def test_each_order_cites_its_own_estimator(study):
     runs, analysis = study
     for name in ("first_order", "total_order"):
         analysis[name].attrs["estimator"] = f"source of {name}"

@@ -30,7 +30,7 @@ print(triple(2.0), len(triple.stats.cache_hits))
 Start = Callable[..., "subprocess.Popen[str]"]
 
 
-def checkout(folder: Path) -> Path:
+def checkout(folder):
     """A package with one kernel, in `folder`."""
     package = folder / "few_kernels"
     package.mkdir(parents=True)
@@ -41,11 +41,11 @@ def checkout(folder: Path) -> Path:
 
 
 @pytest.fixture
-def call(tmp_path: Path) -> Start:
+def call(tmp_path):
     """Start a process that calls the kernel and prints its result and the cache hits."""
     here = checkout(tmp_path / "here")
 
-    def start(folder: Path = here, **settings: str) -> subprocess.Popen[str]:
+    def start(folder=here, **settings):
         path = os.pathsep.join([str(folder), *filter(None, sys.path)])
         env = os.environ | {"PYTHONPATH": path, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
         return subprocess.Popen(
@@ -59,31 +59,31 @@ def call(tmp_path: Path) -> Start:
     return start
 
 
-def printed(process: subprocess.Popen[str]) -> tuple[list[str], str]:
+def printed(process):
     out, errors = process.communicate(timeout=120)
     assert process.returncode == 0, errors
     return out.split(), errors
 
 
 @pytest.mark.chaos
-def test_processes_that_compile_at_once_leave_a_sound_cache(call: Start) -> None:
+def test_processes_that_compile_at_once_leave_a_sound_cache(call):
     started = [call() for _ in range(3)]
     assert {printed(process)[0][0] for process in started} == {"6.0"}
     assert printed(call())[0] == ["6.0", "1"]
 
 
-def test_a_second_checkout_finds_the_kernels_of_the_first(call: Start, tmp_path: Path) -> None:
+def test_a_second_checkout_finds_the_kernels_of_the_first(call, tmp_path):
     assert printed(call())[0] == ["6.0", "0"]
     assert printed(call(checkout(tmp_path / "elsewhere")))[0] == ["6.0", "1"]
 
 
-def test_another_processor_compiles_its_own(call: Start) -> None:
+def test_another_processor_compiles_its_own(call):
     assert printed(call())[0] == ["6.0", "0"]
     assert printed(call(NUMBA_CPU_NAME="generic", NUMBA_CPU_FEATURES=""))[0] == ["6.0", "0"]
     assert printed(call())[0] == ["6.0", "1"]
 
 
-def test_without_a_folder_kernels_run_and_leave_nothing_behind(call: Start, tmp_path: Path) -> None:
+def test_without_a_folder_kernels_run_and_leave_nothing_behind(call, tmp_path):
     for _ in range(2):
         out, errors = printed(call(NUMBA_CACHE_DIR="/dev/null"))
         assert out == ["6.0", "0"]
@@ -105,7 +105,7 @@ DAMAGE: dict[str, Callable[[bytes], bytes]] = {
 
 
 @pytest.mark.parametrize("damage", DAMAGE)
-def test_no_damage_passes_for_a_kernel(damage: str, tmp_path: Path) -> None:
+def test_no_damage_passes_for_a_kernel(damage, tmp_path):
     content = bytes(range(256))
     kernel, other = tmp_path / "a.kernel", tmp_path / "b.kernel"
     for file in (kernel, other):
@@ -117,9 +117,7 @@ def test_no_damage_passes_for_a_kernel(damage: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.chaos
-def test_a_damaged_kernel_is_removed_reported_and_compiled_again(
-    call: Start, tmp_path: Path
-) -> None:
+def test_a_damaged_kernel_is_removed_reported_and_compiled_again(call, tmp_path):
     assert printed(call())[0] == ["6.0", "0"]
     (file,) = (tmp_path / "cache").rglob("*.kernel")
     file.write_bytes(DAMAGE["a bit flipped in the code"](file.read_bytes()))
@@ -132,7 +130,7 @@ def test_a_damaged_kernel_is_removed_reported_and_compiled_again(
 
 
 @pytest.mark.chaos
-def test_a_write_that_fails_half_way_leaves_nothing(call: Start, tmp_path: Path) -> None:
+def test_a_write_that_fails_half_way_leaves_nothing(call, tmp_path):
     """The limit on file size stops it in the middle, as a full disk would."""
     limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))"
     (tmp_path / "here" / "few_kernels" / "__init__.py").write_text(limit)
@@ -143,7 +141,7 @@ def test_a_write_that_fails_half_way_leaves_nothing(call: Start, tmp_path: Path)
 
 
 @pytest.mark.chaos
-def test_a_file_half_written_by_a_killed_process_is_not_read(call: Start, tmp_path: Path) -> None:
+def test_a_file_half_written_by_a_killed_process_is_not_read(call, tmp_path):
     assert printed(call())[0] == ["6.0", "0"]
     (file,) = (tmp_path / "cache").rglob("*.kernel")
     file.rename(file.with_name(f"{file.name}.{32 * 'a'}"))
@@ -164,14 +162,14 @@ print(hashlib.sha256(bits).hexdigest(), len(kernel_of(0, 0).stats.cache_hits))
 
 
 @pytest.mark.long
-def test_every_process_runs_the_same_machine_code(tmp_path: Path) -> None:
+def test_every_process_runs_the_same_machine_code(tmp_path):
     """The first, several that start at once, a second checkout, and one with damaged kernels."""
     package = Path(jit.__file__).parents[1]
     roots = [package.parent, tmp_path / "checkout"]
     ignored = shutil.ignore_patterns("__pycache__")
     shutil.copytree(package, roots[1] / package.name, ignore=ignored)
 
-    def start(root: Path) -> subprocess.Popen[str]:
+    def start(root):
         env = os.environ | {"PYTHONPATH": str(root), "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
         return subprocess.Popen(
             [sys.executable, "-c", SOLVE],
@@ -199,7 +197,7 @@ def test_every_process_runs_the_same_machine_code(tmp_path: Path) -> None:
     assert out == [[out[0][0], "1"]] * 4
 
 
-def test_a_setting_that_numba_refuses_is_named() -> None:
+def test_a_setting_that_numba_refuses_is_named():
     done = subprocess.run(
         [sys.executable, "-m", "impactlab", "simulate", "--velocity", "5"],
         env=os.environ | {"NUMBA_NUM_THREADS": "0"},

@@ -43,7 +43,7 @@ print(hashlib.sha256(b"".join(run[name].values.tobytes() for name in run.variabl
 """
 
 
-def printed(program: str, cache: Path, **settings: str) -> tuple[list[str], str]:
+def printed(program, cache, **settings):
     """Return the words that a process with this program prints, and its messages."""
     root = str(Path(jit.__file__).parents[1])
     environment = os.environ | {"PYTHONPATH": root, "NUMBA_CACHE_DIR": str(cache)} | settings
@@ -54,7 +54,7 @@ def printed(program: str, cache: Path, **settings: str) -> tuple[list[str], str]
     return process.stdout.split(), process.stderr
 
 
-def test_public_options_alone_give_the_same_bits(tmp_path: Path) -> None:
+def test_public_options_alone_give_the_same_bits(tmp_path):
     (total, *private), _ = printed(SUM, tmp_path)
     assert private == ["False", "KernelCache"]
     (plain_total, *plain), messages = printed(SUM, tmp_path / "none", IMPACTLAB_PLAIN_NUMBA="1")
@@ -67,7 +67,7 @@ def test_public_options_alone_give_the_same_bits(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "part", ["core.options.DefaultOptions._nrt", "core.compiler.CompileResult._rebuild"]
 )
-def test_a_missing_private_part_is_named_and_not_needed(part: str, tmp_path: Path) -> None:
+def test_a_missing_private_part_is_named_and_not_needed(part, tmp_path):
     """These are parts that numba itself needs no more once it is imported."""
     assert part in jit._PRIVATE
     (total, *plain), messages = printed(f"import numba\ndel numba.{part}\n{SUM}", tmp_path)
@@ -77,7 +77,7 @@ def test_a_missing_private_part_is_named_and_not_needed(part: str, tmp_path: Pat
 
 
 @pytest.mark.long
-def test_an_impact_has_the_same_bits(tmp_path: Path) -> None:
+def test_an_impact_has_the_same_bits(tmp_path):
     """Beam and contact yield; a kernel loaded from the cache, and one compiled in its process."""
     plain, _ = printed(IMPACT, tmp_path, IMPACTLAB_PLAIN_NUMBA="1")
     assert printed(IMPACT, tmp_path)[0] == plain

@@ -28,7 +28,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_value_and_probability_are_those_of_the_closed_form(name: str) -> None:
+def test_value_and_probability_are_those_of_the_closed_form(name):
     given, value, probability = CASES[name]
     attributes = {"units": "m", "distribution": name} | given
     assert distribution_of(attributes).cumulative(value) == pytest.approx(probability, rel=1e-12)
@@ -36,7 +36,7 @@ def test_value_and_probability_are_those_of_the_closed_form(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_one_undoes_the_other_and_draws_keep_to_the_bounds(name: str) -> None:
+def test_one_undoes_the_other_and_draws_keep_to_the_bounds(name):
     given = {"distribution": name} | CASES[name][0]
     probability = np.array([[2.0**-31, 0.2, 0.5], [0.9, 0.999, 1 - 2.0**-31]])
     values = distribution_of(given).quantile(probability)
@@ -48,13 +48,13 @@ def test_one_undoes_the_other_and_draws_keep_to_the_bounds(name: str) -> None:
     assert values.max() <= given.get("high", np.inf)
 
 
-def test_bounds_are_kept_to_the_last_digit() -> None:
+def test_bounds_are_kept_to_the_last_digit():
     given = {"distribution": "uniform", "low": 0.3, "high": 0.9}
     assert 0.3 + (0.9 - 0.3) != 0.9  # what the linear formula makes of it
     assert distribution_of(given).quantile([0.0, 1.0]).tolist() == [0.3, 0.9]
 
 
-def test_arguments_leave_other_attributes_out() -> None:
+def test_arguments_leave_other_attributes_out():
     given = {"distribution": "uniform", "low": np.float64(1.0), "high": 2, "units": "m"}
     assert distribution_of(given).arguments() == {
         "distribution": "uniform",
@@ -63,7 +63,7 @@ def test_arguments_leave_other_attributes_out() -> None:
     }
 
 
-def test_what_is_no_distribution_is_named() -> None:
+def test_what_is_no_distribution_is_named():
     with pytest.raises(ValueError, match="unknown distribution 'cauchy': choose from uniform"):
         distribution_of({"distribution": "cauchy"})
     with pytest.raises(ValueError, match="'triangular' needs mode, high"):

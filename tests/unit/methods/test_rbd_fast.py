@@ -16,21 +16,21 @@ from impactlab.report.sensitivity import index_tables
 Points = NDArray[np.float64]
 
 
-def _ishigami(u: Points) -> Points:
+def _ishigami(u):
     x = np.pi * (2 * u - 1)
     values = np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
     return np.asarray(values)
 
 
-def _line(u: Points) -> Points:
+def _line(u):
     return np.asarray(u @ [1.0, 2.0, 3.0])
 
 
-def _product(u: Points) -> Points:
+def _product(u):
     return np.asarray((u[:, 0] - 0.5) * (u[:, 1] - 0.5))
 
 
-def _step(u: Points) -> Points:
+def _step(u):
     """Step by 1 over three tenths of x1: variance 0.21, beside a quarter of that of x2."""
     return np.asarray((u[:, 0] > 0.7) + 0.5 * u[:, 1])
 
@@ -46,7 +46,7 @@ CASES: dict[str, tuple[Callable[[Points], Points], Any]] = {
 
 @pytest.mark.parametrize("runs", [64, 512])
 @pytest.mark.parametrize("name", CASES)
-def test_intervals_cover_the_known_first_orders(name: str, runs: int) -> None:
+def test_intervals_cover_the_known_first_orders(name, runs):
     function, exact = CASES[name]
     covered = []
     for seed in range(200):
@@ -62,7 +62,7 @@ def test_intervals_cover_the_known_first_orders(name: str, runs: int) -> None:
     assert np.mean(covered, axis=0).min() >= 0.92
 
 
-def test_one_hypercube_gives_the_indices_of_each_method(tmp_path: Any) -> None:
+def test_one_hypercube_gives_the_indices_of_each_method(tmp_path):
     """Bit by bit, each with a verdict of its own; the first one named ranks."""
     bounds = {name: il.Uniform(-np.pi, np.pi) for name in ("x1", "x2", "x3")}
     kinds = {
@@ -72,7 +72,7 @@ def test_one_hypercube_gives_the_indices_of_each_method(tmp_path: Any) -> None:
         "regression": il.Regression,
     }
 
-    def analysed(sampling: Any) -> tuple[xr.Dataset, xr.Dataset]:
+    def analysed(sampling):
         name = type(sampling).__name__
         study = il.Study(title=name, function="ishigami", sampling=sampling, results=tmp_path)
         runs = study.run(workers=1)
@@ -99,5 +99,5 @@ def test_one_hypercube_gives_the_indices_of_each_method(tmp_path: Any) -> None:
     assert all("Regression" in caption for caption in marked)
 
 
-def _tables(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> Any:
+def _tables(runs, analysis, name):
     return index_tables(runs, analysis, INDICES[name].family)

@@ -1,7 +1,5 @@
 """Morris' and Latin hypercube draws, bit by bit against SALib's."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 from SALib.sample import latin, morris
@@ -11,12 +9,12 @@ import impactlab as il
 SEEDS = (0, 1, 2**32 - 1)
 
 
-def drawn(sampling: Any) -> Any:
+def drawn(sampling):
     runs = il.Study(title="-", function="g", sampling=sampling).design()
     return np.column_stack([runs[name] for name in sampling.parameters])
 
 
-def drawn_by_salib(sampler: Any, number: int, size: int, seed: int, **options: Any) -> Any:
+def drawn_by_salib(sampler, number, size, seed, **options):
     names = [f"x{i + 1}" for i in range(size)]
     groups = options.pop("groups", None)
     problem = {"num_vars": size, "names": names, "bounds": [[0.0, 1.0]] * size, "groups": groups}
@@ -25,13 +23,13 @@ def drawn_by_salib(sampler: Any, number: int, size: int, seed: int, **options: A
     return np.clip(sample, 2.0**-31, 1 - 2.0**-31)
 
 
-def uniform(size: int) -> dict[str, il.Uniform]:
+def uniform(size):
     return {f"x{i + 1}": il.Uniform(0, 1) for i in range(size)}
 
 
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize(("size", "samples"), [(1, 64), (3, 1000), (8, 101)])
-def test_a_latin_hypercube_has_the_same_bits(seed: int, size: int, samples: int) -> None:
+def test_a_latin_hypercube_has_the_same_bits(seed, size, samples):
     ours = drawn(il.Delta(samples=samples, seed=seed, parameters=uniform(size)))
     np.testing.assert_array_equal(ours, drawn_by_salib(latin, samples, size, seed))
 
@@ -39,7 +37,7 @@ def test_a_latin_hypercube_has_the_same_bits(seed: int, size: int, samples: int)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("levels", [2, 4, 10])
 @pytest.mark.parametrize("groups", [None, ["a", "b", "a", "c"]])
-def test_trajectories_have_the_same_bits(seed: int, levels: int, groups: list[str] | None) -> None:
+def test_trajectories_have_the_same_bits(seed, levels, groups):
     members = {"a": ["x1", "x3"], "b": ["x2"], "c": ["x4"]} if groups else {}
     sampling = il.Morris(
         trajectories=20, levels=levels, seed=seed, parameters=uniform(4), groups=members

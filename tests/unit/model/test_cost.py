@@ -29,7 +29,7 @@ PAPER: dict[str, Any] = {
 }
 
 
-def test_steps_of_bending_and_of_a_bar_wave_by_hand() -> None:
+def test_steps_of_bending_and_of_a_bar_wave_by_hand():
     dx, speed = 0.78 / 200, (210e9 / 7800.0) ** 0.5
     bending = 0.5 * dx**2 / (speed * 0.0278 / 12**0.5)
     assert node_steps(PAPER) == pytest.approx(0.5 * 201 * 1e-3 / (0.5 * bending))
@@ -39,7 +39,7 @@ def test_steps_of_bending_and_of_a_bar_wave_by_hand() -> None:
     assert timoshenko == pytest.approx(2.0 * wave)
 
 
-def test_columns_are_many_runs_at_once() -> None:
+def test_columns_are_many_runs_at_once():
     columns = {name: np.array([value, value]) for name, value in PAPER.items()}
     columns["courant"] = np.array([0.5, 0.25])
     one, other = node_steps(columns)
@@ -47,7 +47,7 @@ def test_columns_are_many_runs_at_once() -> None:
     assert other == pytest.approx(2 * one)
 
 
-def test_a_light_sphere_asks_for_small_steps() -> None:
+def test_a_light_sphere_asks_for_small_steps():
     """Return the stiffness of Hertz's spring at the depth that takes all energy, by hand."""
     light = case_table(
         replace(paper_impact(2.0), sphere=replace(paper_impact().sphere, mass=1e-12)),
@@ -63,9 +63,7 @@ def test_a_light_sphere_asks_for_small_steps() -> None:
 
 @pytest.mark.parametrize("model", BEAM_MODELS)
 @pytest.mark.parametrize(("nodes", "mass"), [(21, None), (101, None), (21, 1e-8)])
-def test_steps_are_about_as_many_as_the_kernel_takes(
-    model: str, nodes: int, mass: float | None
-) -> None:
+def test_steps_are_about_as_many_as_the_kernel_takes(model, nodes, mass):
     impact = replace(paper_impact(2.0), beam_model=model, contact="hertz")
     impact = replace(impact, sphere=replace(impact.sphere, mass=mass))
     case = case_table(impact, Discretisation(nodes=nodes), duration=1e-2)
@@ -75,7 +73,7 @@ def test_steps_are_about_as_many_as_the_kernel_takes(
     assert 0.3 < work(case)[0] / rate / steps < 3.0
 
 
-def _seconds(case: Any) -> float:
+def _seconds(case):
     """Return the processor time of a run."""
     cases, least = np.repeat(case, 8), math.inf
     for _ in range(5):
@@ -90,9 +88,7 @@ def _seconds(case: Any) -> float:
     ("velocity", "nodes", "duration"),
     [(1.0, 51, 8e-3), (5.0, 201, 4e-3), (10.0, 101, 4e-3), (20.0, 51, 4e-3)],
 )
-def test_leaps_and_yielding_sections_cost_what_they_take(
-    velocity: float, nodes: int, duration: float
-) -> None:
+def test_leaps_and_yielding_sections_cost_what_they_take(velocity, nodes, duration):
     """Against leapfrog, in one process; a scheme that makes every step is 10 to 45 times beside."""
     grid = Discretisation(nodes=nodes, scheme="modal")
     modal = case_table(paper_impact(velocity), grid, duration=duration)

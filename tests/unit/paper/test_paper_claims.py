@@ -2,8 +2,6 @@
 
 import csv
 from html.parser import HTMLParser
-from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -11,10 +9,8 @@ from impactlab.files import read_netcdf, write_netcdf
 from impactlab.paper.claims import _summary, write_paper
 from impactlab.paper.statements.statement import Assessment, Ruling
 
-Study = Any
 
-
-def test_page_tables_and_figures(velocity_study: Study, tmp_path: Path) -> None:
+def test_page_tables_and_figures(velocity_study, tmp_path):
     """One study is solved; it is stored under the name of the study for figure 8."""
     runs, analysis = velocity_study
     path = tmp_path / "fig08" / "runs.nc"
@@ -45,7 +41,7 @@ def test_page_tables_and_figures(velocity_study: Study, tmp_path: Path) -> None:
     assert span["units"] == "m"
 
 
-def test_a_statement_is_summed_up_from_its_cases() -> None:
+def test_a_statement_is_summed_up_from_its_cases():
     verdicts = {
         (Ruling.HOLDS, Ruling.READING): "holds",
         (Ruling.READING, Ruling.HOLDS): "holds under the stated reading",
@@ -58,6 +54,6 @@ def test_a_statement_is_summed_up_from_its_cases() -> None:
         assert _summary([Assessment("", (), each, "") for each in found]) == expected
 
 
-def _rows(path: Path) -> list[dict[str, str]]:
+def _rows(path):
     with path.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))

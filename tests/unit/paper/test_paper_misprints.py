@@ -3,7 +3,7 @@
 import pytest
 
 from impactlab.paper.statements import misprints
-from impactlab.paper.statements.statement import Ruling, Statement
+from impactlab.paper.statements.statement import Ruling
 
 HOLDS, _, FAILS, _ = Ruling
 
@@ -22,11 +22,11 @@ HOLDS, _, FAILS, _ = Ruling
         (misprints.restitution, [FAILS]),
     ],
 )
-def test_verdicts(statement: Statement, expected: list[Ruling]) -> None:
+def test_verdicts(statement, expected):
     assert [entry.verdict for entry in statement.judge({})] == expected
 
 
-def test_numbers() -> None:
+def test_numbers():
     numbers = {
         (statement.name, n.name): n.value
         for statement in (misprints.few_points, misprints.beam_mass, misprints.time_step)
@@ -37,18 +37,18 @@ def test_numbers() -> None:
     assert numbers["time_step", "ω dt"] > 20.0
 
 
-def test_forces_of_the_printed_radii() -> None:
+def test_forces_of_the_printed_radii():
     """Unloading over loading force at 65 µm, of Eq. 17, Table 1 and the derived form."""
     found = [entry.numbers[0].value for entry in misprints.unloading_radius.judge({})]
     assert found == pytest.approx([0.064, 0.00069, 1.0], rel=0.01)
 
 
-def test_a_right_mass_would_pass() -> None:
+def test_a_right_mass_would_pass():
     assert misprints.beam_mass.judge_case("", {}, 10.15).verdict == HOLDS
     assert misprints.beam_mass.judge_case("", {}, 10.40).verdict == FAILS
 
 
-def test_one_contact_would_pass(grid_runs) -> None:  # type: ignore[no-untyped-def]
+def test_one_contact_would_pass(grid_runs):
     for count, verdict in ((1.0, HOLDS), (2.0, FAILS)):
         runs = grid_runs({"velocity": [0.99]}, number_of_contacts=lambda velocity, n=count: n)
         (found,) = misprints.sub_impacts.judge({"fig05": runs.assign_coords(duration=5e-3)})

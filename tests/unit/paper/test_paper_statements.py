@@ -1,7 +1,6 @@
 """Statements, judged on synthetic runs that confirm or refute them."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -26,26 +25,24 @@ GRIDS = [301, 601, 1201]
 SPEEDS = [0.99, 5.0, 6.0, 7.0, 10.0, 15.0, 20.0]
 
 
-def verdicts(assessments: Any) -> list[Ruling]:
+def verdicts(assessments):
     return [entry.verdict for entry in assessments]
 
 
-def second_order(nodes: Any, share: float) -> Any:
+def second_order(nodes, share):
     """Return values with a relative error of `share` at 601 nodes."""
     return 1.0 + share * (600.0 / (nodes - 1.0)) ** 2
 
 
 @pytest.fixture
-def fig08(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
-    def build(
-        power: float = -0.2, lumped: float = 0.9, rise: float = 0.0, laws: Any = ("hertz",)
-    ) -> Any:
-        def duration(velocity: Any, contact: Any, beam_model: Any, nodes: Any) -> Any:
+def fig08(grid_runs):
+    def build(power=-0.2, lumped=0.9, rise=0.0, laws=("hertz",)):
+        def duration(velocity, contact, beam_model, nodes):
             spring = xr.where(beam_model == "spring_mass", lumped, 1.0)
             late = xr.where(velocity > 12.0, 1.0 + rise, 1.0)
             return 1e-4 * velocity**power * spring * late * second_order(nodes, 1e-5)
 
-        def depth(velocity: Any, contact: Any, beam_model: Any, nodes: Any) -> Any:
+        def depth(velocity, contact, beam_model, nodes):
             return 6e-5 * velocity * second_order(nodes, 1e-5)
 
         axes = {
@@ -59,7 +56,7 @@ def fig08(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
     return build
 
 
-def test_duration_falls(fig08: Any) -> None:
+def test_duration_falls(fig08):
     assert verdicts(velocity.duration_falls.judge(fig08())) == [HOLDS]
     assert verdicts(velocity.duration_falls.judge(fig08(power=0.2))) == [FAILS]
     (partly,) = velocity.duration_falls.judge(fig08(rise=0.5))
@@ -67,13 +64,13 @@ def test_duration_falls(fig08: Any) -> None:
     assert "up to 10 m/s and rises" in partly.why
 
 
-def test_a_fall_within_the_uncertainty_does_not_count(fig08: Any) -> None:
+def test_a_fall_within_the_uncertainty_does_not_count(fig08):
     (flat,) = velocity.duration_falls.judge(fig08(power=-1e-7))
     assert flat.verdict == FAILS
     assert "does not fall by more than its uncertainty" in flat.why
 
 
-def test_above_spring_mass(fig08: Any) -> None:
+def test_above_spring_mass(fig08):
     assert verdicts(velocity.above_spring_mass.judge(fig08())) == [HOLDS]
     assert verdicts(velocity.above_spring_mass.judge(fig08(lumped=1.1))) == [FAILS]
     data = fig08(lumped=1.1, rise=0.5)
@@ -84,7 +81,7 @@ def test_above_spring_mass(fig08: Any) -> None:
     assert partly.why.endswith("not at 20.")
 
 
-def test_the_indentation_grows(fig08: Any) -> None:
+def test_the_indentation_grows(fig08):
     data = fig08(laws=("stronge", "mjg"))
     found = list(velocity.indentation_grows.judge(data))
     assert verdicts(found) == [HOLDS, HOLDS, READING]
@@ -98,7 +95,7 @@ def test_the_indentation_grows(fig08: Any) -> None:
     assert "15 to 20 m/s" in found[0].why
 
 
-def test_both_laws_agree_with_measurements_only_if_with_each_other(fig08: Any) -> None:
+def test_both_laws_agree_with_measurements_only_if_with_each_other(fig08):
     data = fig08(laws=("stronge", "hertz"))
     assert verdicts(velocity.both_laws_measured.judge(data)) == [HOLDS]
     data["fig08"]["contact_duration"].loc[{"contact": "hertz"}] *= 1.2
@@ -111,16 +108,14 @@ def test_both_laws_agree_with_measurements_only_if_with_each_other(fig08: Any) -
 
 
 @pytest.fixture
-def fig10(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
+def fig10(grid_runs):
     """Strains of 0 up to the velocity `begins`, then growing by `slope` per m/s, at both times.
 
     Along the beam they fall linearly to `far` of that two depths away.
     """
 
-    def build(
-        begins: float = 6.0, slope: float = 2e-4, error: float = 1e-4, far: float = 0.5
-    ) -> Any:
-        def strain(velocity: Any, nodes: Any) -> Any:
+    def build(begins=6.0, slope=2e-4, error=1e-4, far=0.5):
+        def strain(velocity, nodes):
             return slope * (velocity - begins).clip(min=0.0) * second_order(nodes, error)
 
         axes = {"velocity": SPEEDS, "nodes": GRIDS}
@@ -138,7 +133,7 @@ def fig10(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
     return build
 
 
-def test_plastic_strain_as_in_the_paper(fig10: Any) -> None:
+def test_plastic_strain_as_in_the_paper(fig10):
     """At 10 m/s 0.14 %; at 15 m/s 0.34 %, which falls to 0.17 % two depths away."""
     data = fig10(begins=6.5, slope=4e-4)
     assert verdicts(plastic_strain.elastic_to_5.judge(data)) == [HOLDS, READING]
@@ -150,7 +145,7 @@ def test_plastic_strain_as_in_the_paper(fig10: Any) -> None:
     assert verdicts(plastic_strain.plasticity_begins.judge(data)) == [HOLDS, READING]
 
 
-def test_plastic_strain_other_than_in_the_paper(fig10: Any) -> None:
+def test_plastic_strain_other_than_in_the_paper(fig10):
     assert verdicts(plastic_strain.elastic_to_5.judge(fig10(begins=3.0))) == [FAILS, FAILS]
     high = fig10(slope=1.2e-3)
     assert verdicts(plastic_strain.below_limit_at_10.judge(high)) == [FAILS] * 8
@@ -162,7 +157,7 @@ def test_plastic_strain_other_than_in_the_paper(fig10: Any) -> None:
     assert verdicts(begins.judge(fig10(begins=30.0))) == [UNKNOWN] * 2
 
 
-def test_the_place_is_found_between_nodes(fig10: Any) -> None:
+def test_the_place_is_found_between_nodes(fig10):
     """1 + far of the strain at mid-span, halved, one depth away."""
     for depths, share in ((0.0, 1.0), (1.0, 0.75), (2.0, 0.5)):
         found = plastic_strain._strain_beyond(fig10(), 10.0, depths)
@@ -172,7 +167,7 @@ def test_the_place_is_found_between_nodes(fig10: Any) -> None:
     assert rising.value == pytest.approx(2.0 * 8e-4, rel=1e-3)
 
 
-def test_a_peak_needs_plastic_strain(fig10: Any, grid_runs: Build) -> None:
+def test_a_peak_needs_plastic_strain(fig10, grid_runs):
     """Without any there is none; in 3-D the strain is about the contact alone, or elsewhere."""
     models = {"velocity": [0.99, 5.0, 10.0], "beam_model": ["euler_bernoulli", "solid"]}
     for far, expected in ((0.0, READING), (1e-3, FAILS)):
@@ -188,7 +183,7 @@ def test_a_peak_needs_plastic_strain(fig10: Any, grid_runs: Build) -> None:
     assert verdicts(plastic_strain.peak_under_impact.judge(yielding))[:2] == [HOLDS, READING]
 
 
-def test_a_strain_limit_within_the_uncertainty_cannot_be_judged(fig10: Any) -> None:
+def test_a_strain_limit_within_the_uncertainty_cannot_be_judged(fig10):
     """The strain at 10 m/s on the finest grid is about 0.2 %."""
     data = fig10(begins=6.0, slope=5e-4, error=0.01, far=1.0)
     found = list(plastic_strain.below_limit_at_10.judge(data))
@@ -197,11 +192,11 @@ def test_a_strain_limit_within_the_uncertainty_cannot_be_judged(fig10: Any) -> N
 
 
 @pytest.fixture
-def effects(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
+def effects(grid_runs):
     """Responses that shear changes by a share, and the strain rate by up to `rise`."""
 
-    def build(shear: float = 0.01, rise: float = 0.2) -> Any:
-        def value(velocity: Any, beam_model: Any, beam_rate_coefficient: Any, nodes: Any) -> Any:
+    def build(shear=0.01, rise=0.2):
+        def value(velocity, beam_model, beam_rate_coefficient, nodes):
             sheared = xr.where(beam_model == "timoshenko", 1.0 + shear, 1.0)
             coefficient = beam_rate_coefficient.where(beam_rate_coefficient > 0.0, np.inf)
             rated = 1.0 + rise * (40.4 / coefficient) ** 0.2
@@ -219,7 +214,7 @@ def effects(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
     return build
 
 
-def test_shear(effects: Any) -> None:
+def test_shear(effects):
     found = list(omissions.shear.judge(effects()))
     assert verdicts(found) == [FAILS, READING] * 3
     assert found[0].numbers[0].value == pytest.approx(0.01)
@@ -227,7 +222,7 @@ def test_shear(effects: Any) -> None:
     assert verdicts(omissions.shear.judge(effects(shear=-0.05))) == [FAILS] * 6
 
 
-def test_strain_rate(effects: Any) -> None:
+def test_strain_rate(effects):
     """The interval reaches from the change of high-tensile steel to that of mild steel."""
     force, _ = next(iter(omissions.strain_rate.judge(effects()))).numbers
     assert force.low == pytest.approx(0.2 * (40.4 / 3200.0) ** 0.2, abs=1e-5)
@@ -239,7 +234,7 @@ def test_strain_rate(effects: Any) -> None:
     assert verdicts(omissions.strain_rate.judge(static)) == [UNKNOWN] * 6
 
 
-def test_run_time(grid_runs: Build, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_run_time(grid_runs, monkeypatch):
     axes = {"beam_model": ["solid"], "element_size": [1e-3, 2e-4]}
     runs = grid_runs(axes, processor_time=lambda beam_model, element_size: 2e-3 / element_size)
     for taken, expected in ((0.02, HOLDS), (5.0, FAILS)):
@@ -252,12 +247,12 @@ def test_run_time(grid_runs: Build, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def fig06(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
-    def build(share: float, bad_points: int = 0) -> Any:
-        def answer(velocity: Any, points: Any, nodes: Any) -> Any:
+def fig06(grid_runs):
+    def build(share, bad_points=0):
+        def answer(velocity, points, nodes):
             return velocity * second_order(nodes, share)
 
-        def by_points(velocity: Any, rule: Any, points: Any) -> Any:
+        def by_points(velocity, rule, points):
             return velocity * xr.where(points <= bad_points, 1.1, 1.0)
 
         names = (
@@ -282,13 +277,13 @@ def fig06(grid_runs: Build) -> Callable[..., dict[str, xr.Dataset]]:
     return build
 
 
-def test_nodes(fig06: Any) -> None:
+def test_nodes(fig06):
     assert verdicts(resolution.nodes_suffice.judge(fig06(0.006))) == [HOLDS] * 4
     assert verdicts(resolution.nodes_suffice.judge(fig06(0.0005))) == [READING] * 4
     assert verdicts(resolution.nodes_suffice.judge(fig06(0.02))) == [FAILS] * 4
 
 
-def test_points(fig06: Any) -> None:
+def test_points(fig06):
     good = verdicts(resolution.points_suffice.judge(fig06(0.0)))
     assert good == [HOLDS] * 4 + [READING] * 12
     assert verdicts(resolution.points_suffice.judge(fig06(0.0, bad_points=2))) == (
@@ -296,7 +291,7 @@ def test_points(fig06: Any) -> None:
     )
 
 
-def test_two_grids_can_fail_but_not_hold(fig06: Any) -> None:
+def test_two_grids_can_fail_but_not_hold(fig06):
     """Half of the change between two grids is the least that the coarser one errs."""
     for share, expected in ((0.0005, UNKNOWN), (0.2, FAILS)):
         runs = fig06(share)["fig06_nodes"].sel(nodes=[601, 1201])
@@ -304,7 +299,7 @@ def test_two_grids_can_fail_but_not_hold(fig06: Any) -> None:
         assert verdicts(found) == [expected] * 4
 
 
-def test_lobatto_as_the_reason(fig06: Any) -> None:
+def test_lobatto_as_the_reason(fig06):
     data = fig06(0.0)
     assert verdicts(resolution.lobatto_is_the_reason.judge(data)) == [FAILS] * 4
     where = {"rule": "layers", "points": [2, 4], "velocity": 0.99}
@@ -313,7 +308,7 @@ def test_lobatto_as_the_reason(fig06: Any) -> None:
     assert found == [READING, READING, FAILS, FAILS]
 
 
-def test_one_inaccurate_response_is_enough_to_fail(fig06: Any) -> None:
+def test_one_inaccurate_response_is_enough_to_fail(fig06):
     data = fig06(0.0005)
     where = {"velocity": 15.0, "points": 21, "nodes": 601}
     data["fig06_nodes"]["contact_duration"].loc[where] *= 1.05
@@ -323,7 +318,7 @@ def test_one_inaccurate_response_is_enough_to_fail(fig06: Any) -> None:
     assert found["15 m/s, plastic strain (PEEQ)"].verdict == READING
 
 
-def test_a_failed_run_is_reported_and_not_judged(fig08: Any) -> None:
+def test_a_failed_run_is_reported_and_not_judged(fig08):
     data = fig08()
     where = {"velocity": 5.0, "beam_model": "euler_bernoulli", "nodes": 601}
     data["fig08"]["status"].loc[where] = outputs.DIVERGED
@@ -332,7 +327,7 @@ def test_a_failed_run_is_reported_and_not_judged(fig08: Any) -> None:
     assert "at 5 m/s 1 of 3 runs lack it: the run diverged" in found.why
 
 
-def test_without_studies_only_closed_forms_are_judged() -> None:
+def test_without_studies_only_closed_forms_are_judged():
     for statement, found in judge_all({}):
         if statement.studies:
             assert set(verdicts(found)) == {UNKNOWN}, statement.name
@@ -342,10 +337,10 @@ def test_without_studies_only_closed_forms_are_judged() -> None:
         assert UNKNOWN not in verdicts(found), statement.name
 
 
-def test_names_are_unique() -> None:
+def test_names_are_unique():
     assert len({statement.name for statement in STATEMENTS}) == len(STATEMENTS)
 
 
-def test_two_grids_give_no_uncertainty(fig08: Any) -> None:
+def test_two_grids_give_no_uncertainty(fig08):
     data = {"fig08": fig08()["fig08"].isel(nodes=slice(2))}
     assert verdicts(velocity.duration_falls.judge(data)) == [UNKNOWN]

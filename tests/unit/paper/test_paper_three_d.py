@@ -1,8 +1,5 @@
 """Statements on the 3-D model, judged on synthetic runs that confirm or refute them."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -21,28 +18,28 @@ TIME = np.linspace(0.0, 0.45e-3, 451)
 
 
 @pytest.fixture
-def witness(grid_runs: Callable[..., xr.Dataset]) -> Callable[..., dict[str, xr.Dataset]]:
+def witness(grid_runs):
     """Beams with values `gap` above those of a 3-D model with a second-order error `error`.
 
     The force is a half sine of 0.2 ms, the beam's `late` s later.
     """
 
     def build(
-        gap: float = 0.01,
-        error: float = 1e-4,
-        reach: float = 1.5e-3,
-        late: float = 0.0,
-        meshes: bool = False,
-    ) -> Any:
-        def value(velocity: Any, beam_model: Any, nodes: Any, element_size: Any) -> Any:
+        gap=0.01,
+        error=1e-4,
+        reach=1.5e-3,
+        late=0.0,
+        meshes=False,
+    ):
+        def value(velocity, beam_model, nodes, element_size):
             solid = velocity * (1.0 + error * (element_size / 0.5e-3) ** 2)
             beam = velocity * (1.0 + gap) * (1.0 + 1e-5 * (600.0 / (nodes - 1.0)) ** 2)
             return xr.where(beam_model == "solid", solid, beam)
 
-        def zone(beam_model: Any, element_size: Any, **others: Any) -> Any:
+        def zone(beam_model, element_size, **others):
             return xr.where(beam_model == "solid", 2.0 * reach, 0.0) + 0.0 * element_size
 
-        def indentation(beam_model: Any, element_size: Any, **others: Any) -> Any:
+        def indentation(beam_model, element_size, **others):
             return 1.5e-3**2 / 35e-3 * (1.0 + error * (element_size / 0.5e-3) ** 2)
 
         runs = grid_runs(
@@ -66,17 +63,17 @@ def witness(grid_runs: Callable[..., xr.Dataset]) -> Callable[..., dict[str, xr.
     return build
 
 
-def mesh_study(data: dict[str, xr.Dataset]) -> xr.Dataset:
+def mesh_study(data):
     """Return the 3-D runs at the paper's velocity, as a study of meshes has them."""
     runs = data["witness"].drop_dims("time").isel(nodes=0, drop=True)
     return runs.sel(velocity=0.99, beam_model=["solid"])
 
 
-def verdicts(assessments: Any) -> list[Ruling]:
+def verdicts(assessments):
     return [entry.verdict for entry in assessments]
 
 
-def test_measures_of_the_force_history(witness: Any) -> None:
+def test_measures_of_the_force_history(witness):
     """L2, shifted, peak and impulse: all differ by the gap; a delay alone by L2."""
     assert verdicts(three_d.force_history.judge(witness())) == [HOLDS] + [READING] * 3
     found = list(three_d.force_history.judge(witness(gap=-0.05)))
@@ -93,7 +90,7 @@ def test_measures_of_the_force_history(witness: Any) -> None:
     assert "−9 µs" in late[1].numbers[0].name
 
 
-def test_what_the_uncertainty_encloses_is_compatible(witness: Any) -> None:
+def test_what_the_uncertainty_encloses_is_compatible(witness):
     found = list(three_d.force_history.judge(witness(gap=0.05, error=0.02)))
     assert verdicts(found)[2] == READING
     assert "compatible" in found[2].why
@@ -103,13 +100,13 @@ def test_what_the_uncertainty_encloses_is_compatible(witness: Any) -> None:
     assert verdicts(three_d.duration_of_witness.judge(witness(gap=0.01))) == [FAILS] * 2
 
 
-def test_finer_meshes_are_used_at_the_papers_velocity(witness: Any) -> None:
+def test_finer_meshes_are_used_at_the_papers_velocity(witness):
     data = witness(gap=0.01, error=0.02)
     data["witness_mesh"] = mesh_study(witness(gap=0.01, error=1e-4))
     assert verdicts(three_d.duration_of_witness.judge(data)) == [FAILS, READING]
 
 
-def test_element_counts_per_radius_replace_element_sizes(witness: Any) -> None:
+def test_element_counts_per_radius_replace_element_sizes(witness):
     """The assessments do not depend on whether element sizes or counts are varied."""
     data = witness(gap=0.01, error=1e-3)
     runs = data["witness"].rename(element_size="elements_per_radius")
@@ -127,14 +124,14 @@ def test_element_counts_per_radius_replace_element_sizes(witness: Any) -> None:
     assert "witness_mesh has not been solved" in zone.why
 
 
-def test_the_deflection(witness: Any) -> None:
+def test_the_deflection(witness):
     for gap, expected in ((0.0, [READING] * 2), (0.02, [FAILS, READING]), (0.06, [FAILS] * 2)):
         assert verdicts(three_d.deflection_history.judge(witness(gap=gap))) == expected
     bare = {"witness": witness()["witness"].drop_vars("midspan_deflection")}
     assert verdicts(three_d.deflection_history.judge(bare)) == [UNKNOWN] * 2
 
 
-def test_the_plastic_zone(witness: Any) -> None:
+def test_the_plastic_zone(witness):
     for reach, expected in ((1.5e-3, READING), (2.5e-3, FAILS)):
         found = list(three_d.plastic_zone_extent.judge(witness(reach=reach, meshes=True)))
         assert verdicts(found[:3]) == [expected] * 3
@@ -144,7 +141,7 @@ def test_the_plastic_zone(witness: Any) -> None:
         assert found[3].numbers[0].value == pytest.approx(1.5e-3, rel=1e-3)
 
 
-def test_the_place_of_the_plastic_zone(witness: Any) -> None:
+def test_the_place_of_the_plastic_zone(witness):
     """The contact's radius is 1.5 or 2.1 mm; the zone's edge is known within an element."""
     place = three_d.plastic_zone_place
     assert verdicts(place.judge(witness(meshes=True))) == [READING] * 3
@@ -154,7 +151,7 @@ def test_the_place_of_the_plastic_zone(witness: Any) -> None:
     assert verdicts(place.judge(data)) == [FAILS] * 3
 
 
-def test_a_missing_study_or_run_is_reported(witness: Any) -> None:
+def test_a_missing_study_or_run_is_reported(witness):
     for statement in (three_d.force_history, three_d.duration_of_witness):
         assert {*verdicts(statement.judge({}))} == {UNKNOWN}
     data = witness(gap=0.0)

@@ -1,11 +1,9 @@
 """Pages read back as a browser does."""
 
 import shutil
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Callable
+from contextlib import contextmanager
 from html.parser import HTMLParser
-from pathlib import Path
-from typing import Any
 
 import pytest
 import xarray as xr
@@ -30,7 +28,7 @@ VOID = {"meta", "img", "br", "link", "input", "hr"}
 class Page(HTMLParser):
     """Elements with their attributes, the text, and whether tags are closed in order."""
 
-    def __init__(self, source: str) -> None:
+    def __init__(self, source):
         super().__init__()
         self.source = source
         self.elements: list[tuple[str, dict[str, str]]] = []
@@ -42,7 +40,7 @@ class Page(HTMLParser):
         self.close()
         self.text = " ".join(self.text.split())
 
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+    def handle_starttag(self, tag, attrs):
         self.elements.append((tag, {key: value or "" for key, value in attrs}))
         if tag not in VOID:
             self.open.append(tag)
@@ -54,13 +52,13 @@ class Page(HTMLParser):
         if tag in ("td", "th"):
             self._rows[-1].append("")
 
-    def handle_endtag(self, tag: str) -> None:
+    def handle_endtag(self, tag):
         assert self.open, f"</{tag}> closes nothing"
         assert self.open.pop() == tag
         if tag == "caption":
             self.tables[self._caption] = self._rows
 
-    def handle_data(self, data: str) -> None:
+    def handle_data(self, data):
         if "style" in self.open:
             return
         self.text += f" {data}"
@@ -69,7 +67,7 @@ class Page(HTMLParser):
         elif any(tag in self.open for tag in ("td", "th")):
             self._rows[-1][-1] += data
 
-    def named(self, tag: str) -> list[dict[str, str]]:
+    def named(self, tag):
         """Attributes of every element of a kind."""
         return [attrs for name, attrs in self.elements if name == tag]
 
@@ -78,10 +76,10 @@ Report = Callable[[xr.Dataset, xr.Dataset], Page]
 
 
 @pytest.fixture
-def report(tmp_path: Path) -> Report:
+def report(tmp_path):
     """A function that writes a study's report, without figures, and reads it back."""
 
-    def write(runs: xr.Dataset, analysis: xr.Dataset) -> Page:
+    def write(runs, analysis):
         figures = tmp_path / "figures"
         figures.mkdir(exist_ok=True)
         (figures / "captions.json").write_text("{}")
@@ -92,13 +90,13 @@ def report(tmp_path: Path) -> Report:
 
 
 @pytest.fixture
-def page() -> type[Page]:
+def page():
     """The class that reads a page."""
     return Page
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[Any]:
+def browser():
     """Chromium, as Debian has it."""
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     if CHROMIUM is None:
@@ -110,11 +108,11 @@ def browser() -> Iterator[Any]:
 
 
 @pytest.fixture
-def visit(browser: Any) -> Callable[[str, int], AbstractContextManager[tuple[Any, list[str]]]]:
+def visit(browser):
     """Open a page as a context, with the addresses it asks for; it must complain of nothing."""
 
     @contextmanager
-    def visiting(address: str, width: int) -> Iterator[tuple[Any, list[str]]]:
+    def visiting(address, width):
         page = browser.new_page(viewport={"width": width, "height": 900})
         asked: list[str] = []
         complaints: list[str] = []
@@ -130,13 +128,13 @@ def visit(browser: Any) -> Callable[[str, int], AbstractContextManager[tuple[Any
 
 
 @pytest.fixture(scope="session")
-def drawn(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def drawn(tmp_path_factory):
     """A folder for what `results` copies: figures take a second to draw."""
     return tmp_path_factory.mktemp("drawn")
 
 
 @pytest.fixture
-def results(velocity_study: Any, drawn: Path, tmp_path: Path) -> Path:
+def results(velocity_study, drawn, tmp_path):
     """A results folder with one study, figures and all."""
     folder = drawn / "velocity"
     if not folder.exists():

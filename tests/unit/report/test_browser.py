@@ -1,9 +1,5 @@
 """The report of a sample, read and clicked through in a browser."""
 
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
-
 import pytest
 import samples
 
@@ -15,12 +11,11 @@ pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 ALIKE = ("pawn", "regression", "surrogate_first_order", "total_order_by_samples")
 """Left out: their figures look like others, and each takes seconds to draw."""
 FOCUS = "document.activeElement"
-Page = Any
 """A page of playwright's, with what it asked for (`asked`) and complained of (`complaints`)."""
 
 
 @pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory) -> str:
+def address(tmp_path_factory):
     """A report with failures, a mostly constant response and most kinds of indices."""
     folder = tmp_path_factory.mktemp("sample")
     runs = samples.sample(128, failures=5)[["peak_force", "remote_plastic_strain", "status"]]
@@ -31,14 +26,14 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 @pytest.fixture
-def page(visit: Any, address: str) -> Iterator[Page]:
+def page(visit, address):
     """The report, opened; at the end it must have asked for nothing."""
     with visit(address, 1280) as (page, asked):
         yield page
     assert [url for url in asked if not url.startswith(("data:", address))] == []
 
 
-def test_the_keyboard_reaches_everything_in_the_order_of_the_page(page: Page) -> None:
+def test_the_keyboard_reaches_everything_in_the_order_of_the_page(page):
     wanted = page.evaluate(
         "[...document.querySelectorAll('a[href], summary, [tabindex=\"0\"]')]"
         ".filter(e => e.checkVisibility({contentVisibilityAuto: true})).length"
@@ -59,7 +54,7 @@ def test_the_keyboard_reaches_everything_in_the_order_of_the_page(page: Page) ->
     assert len({href for _, href, _ in seen if href}) == links > 15
 
 
-def test_the_navigation_leads_to_each_section(page: Page) -> None:
+def test_the_navigation_leads_to_each_section(page):
     links = page.locator("nav a")
     titles = links.all_inner_texts()
     assert titles[:2] == ["Ranking", "First and total order"]
@@ -73,7 +68,7 @@ def test_the_navigation_leads_to_each_section(page: Page) -> None:
     assert page.locator("main section").count() == 1 + len(titles), "the answer has no link"
 
 
-def test_every_fold_opens_by_keyboard(page: Page) -> None:
+def test_every_fold_opens_by_keyboard(page):
     folds = page.locator("details")
     assert folds.count() > 10
     for fold in folds.all():
@@ -84,7 +79,7 @@ def test_every_fold_opens_by_keyboard(page: Page) -> None:
 
 
 @pytest.mark.parametrize(("width", "clipped"), [(1300, 0), (420, None)])
-def test_nothing_is_wider_than_the_window(page: Page, width: int, clipped: int | None) -> None:
+def test_nothing_is_wider_than_the_window(page, width, clipped):
     page.set_viewport_size({"width": width, "height": 900})
     for fold in page.locator("details").all():
         fold.evaluate("e => e.open = true")
@@ -97,7 +92,7 @@ def test_nothing_is_wider_than_the_window(page: Page, width: int, clipped: int |
 
 
 @pytest.mark.parametrize(("width", "shown"), [(1300, ".answer, .answer img"), (420, ".answer ul")])
-def test_the_first_screen_shows_the_answer(page: Page, width: int, shown: str) -> None:
+def test_the_first_screen_shows_the_answer(page, width, shown):
     page.set_viewport_size({"width": width, "height": 900})
     ends = page.locator(shown).evaluate_all("all => all.map(e => e.getBoundingClientRect().bottom)")
     assert ends
@@ -105,7 +100,7 @@ def test_the_first_screen_shows_the_answer(page: Page, width: int, shown: str) -
     assert page.locator(".answer li").count() <= 5
 
 
-def test_every_figure_is_drawn_and_told(page: Page) -> None:
+def test_every_figure_is_drawn_and_told(page):
     figures = page.locator("figure img")
     assert figures.count() == len(page.locator("figcaption").all()) >= 10
     drawn = figures.evaluate_all("all => all.map(e => e.complete && e.naturalWidth > 0)")
@@ -116,7 +111,7 @@ def test_every_figure_is_drawn_and_told(page: Page) -> None:
     assert "Peak force: first order: largest for impact velocity (0.711)" in bars
 
 
-def test_figures_follow_a_dark_page_and_stay_as_drawn_in_print(page: Page) -> None:
+def test_figures_follow_a_dark_page_and_stay_as_drawn_in_print(page):
     seen = "getComputedStyle(document.querySelector('.answer img')).filter"
     assert page.evaluate(seen) == "none"
     page.emulate_media(color_scheme="dark")
@@ -125,7 +120,7 @@ def test_figures_follow_a_dark_page_and_stay_as_drawn_in_print(page: Page) -> No
     assert page.evaluate(seen) == "none"
 
 
-def test_the_index_crops_no_thumbnail(browser: Any, results: Path) -> None:
+def test_the_index_crops_no_thumbnail(browser, results):
     write_index(results, results / "index.html")
     page = browser.new_page(viewport={"width": 1300, "height": 900})
     page.goto((results / "index.html").as_uri())
@@ -133,13 +128,13 @@ def test_the_index_crops_no_thumbnail(browser: Any, results: Path) -> None:
     page.close()
 
 
-def test_what_is_in_doubt_is_named_beside_the_numbers(page: Page) -> None:
+def test_what_is_in_doubt_is_named_beside_the_numbers(page):
     rows = page.locator("#sensitivity > .scroll tbody tr", has_text="Remote plastic strain")
     assert rows.count() == 2
     assert all("mostly constant" in text for text in rows.all_inner_texts())
 
 
-def test_prints_without_cutting(page: Page, tmp_path: Path) -> None:
+def test_prints_without_cutting(page, tmp_path):
     page.emulate_media(media="print")
     page.set_viewport_size({"width": 660, "height": 900})  # between the margins of A4, at 96 dpi
     assert page.evaluate("document.documentElement.scrollWidth") <= 660

@@ -4,7 +4,6 @@ import hashlib
 import json
 import shutil
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -19,7 +18,7 @@ ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture
-def folder(results: Path, drawn: Path) -> Path:
+def folder(results, drawn):
     """A study, drawn and reported, and a file of somebody else's; for reading only."""
     folder = drawn.with_name("reported")
     if not folder.exists():
@@ -31,12 +30,12 @@ def folder(results: Path, drawn: Path) -> Path:
 
 
 @pytest.fixture
-def graph(folder: Path) -> dict[str, dict[str, Any]]:
+def graph(folder):
     crate = json.loads((folder / "ro-crate-metadata.json").read_text("utf-8"))
     return {entity["@id"]: entity for entity in crate["@graph"]}
 
 
-def test_every_file_is_described_with_size_and_hash(folder: Path, graph: Any) -> None:
+def test_every_file_is_described_with_size_and_hash(folder, graph):
     files = {name for name, entity in graph.items() if entity["@type"] == "File"}
     there = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
     assert files == there - {"notes.txt", "ro-crate-metadata.json"}
@@ -48,7 +47,7 @@ def test_every_file_is_described_with_size_and_hash(folder: Path, graph: Any) ->
     assert {entry["@id"] for entry in graph["./"]["hasPart"]} == files
 
 
-def test_it_says_what_made_the_files(folder: Path, graph: Any) -> None:
+def test_it_says_what_made_the_files(folder, graph):
     attrs = read_netcdf(folder / "runs.nc", "runs").attrs
     assert (folder / "solved_study.yaml").read_text("utf-8") == attrs["study_text"]
     assert graph["ro-crate-metadata.json"]["about"] == {"@id": "./"}
@@ -63,8 +62,8 @@ def test_it_says_what_made_the_files(folder: Path, graph: Any) -> None:
     assert graph[software["license"]["@id"]]["name"] == citation["license"]
 
 
-def test_every_reference_is_described(graph: Any) -> None:
-    def references(value: Any) -> set[str]:
+def test_every_reference_is_described(graph):
+    def references(value):
         if isinstance(value, list):
             return set().union(*map(references, value))
         return {value["@id"]} if isinstance(value, dict) else set()
@@ -74,14 +73,14 @@ def test_every_reference_is_described(graph: Any) -> None:
         assert references(list(entity.values())) <= graph.keys() | outside
 
 
-def test_what_lies_elsewhere_is_left_out(folder: Path, tmp_path: Path) -> None:
+def test_what_lies_elsewhere_is_left_out(folder, tmp_path):
     runs = read_netcdf(folder / "runs.nc", "runs")
     crate = write_crate(runs, tmp_path / "new", folder / "figures", folder / "report.html")
     graph = json.loads(crate.read_text("utf-8"))["@graph"]
     assert [each["@id"] for each in graph if each["@type"] == "File"] == ["solved_study.yaml"]
 
 
-def test_pictures_name_their_study_and_its_hash(folder: Path) -> None:
+def test_pictures_name_their_study_and_its_hash(folder):
     attrs = read_netcdf(folder / "runs.nc", "runs").attrs
     source = f"study velocity, SHA-256 of its file: {attrs['study_sha256']}"
     with Image.open(folder / "figures" / "contact_duration.png") as picture:

@@ -1,8 +1,6 @@
 """The page of sliders, used in a browser: its numbers are those of `impactlab predict`."""
 
 import shlex
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import command_line
@@ -34,11 +32,10 @@ DISTRIBUTIONS: dict[str, dict[str, Any]] = {
     },
     "beam_density": {"distribution": "uniform", "low": 7700.0, "high": 7900.0},
 }
-Page = Any
 
 
 @pytest.fixture(scope="module")
-def sample() -> tuple[xr.Dataset, xr.Dataset]:
+def sample():
     """Runs of every distribution: smooth answers, one across zero, one constant."""
     unit = np.random.default_rng(4).uniform(size=(600, len(DISTRIBUTIONS)))
     pairs = enumerate(DISTRIBUTIONS.items())
@@ -63,7 +60,7 @@ def sample() -> tuple[xr.Dataset, xr.Dataset]:
 
 
 @pytest.fixture
-def folder(sample: tuple[xr.Dataset, xr.Dataset], tmp_path: Path) -> Path:
+def folder(sample, tmp_path):
     """A folder with surrogate.nc, report and explorer."""
     (tmp_path / "captions.json").write_text("{}")
     write_report(*sample, tmp_path, tmp_path / "report.html")
@@ -74,7 +71,7 @@ def folder(sample: tuple[xr.Dataset, xr.Dataset], tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def explorer(visit: Any, folder: Path) -> Iterator[Page]:
+def explorer(visit, folder):
     """The page, reached from its report; it must ask for no other."""
     with visit((folder / "report.html").as_uri(), 1300) as (page, asked):
         page.click("text=The explorer")
@@ -82,7 +79,7 @@ def explorer(visit: Any, folder: Path) -> Iterator[Page]:
     assert asked == [(folder / name).as_uri() for name in ("report.html", "report_explorer.html")]
 
 
-def move(page: Page, name: str, share: float) -> None:
+def move(page, name, share):
     """Move a slider to a share of its way."""
     page.locator(f"#{name}-slider").evaluate(
         "(e, x) => { e.value = Math.round(e.max * x); e.dispatchEvent(new Event('input')) }",
@@ -90,11 +87,11 @@ def move(page: Page, name: str, share: float) -> None:
     )
 
 
-def shown(page: Page, response: str) -> str:
+def shown(page, response):
     return str(page.locator(f"#response-{response} output").inner_text())
 
 
-def predicted(page: Page, folder: Path) -> dict[str, list[str]]:
+def predicted(page, folder):
     """Cells of the table that the command on the page prints, by response."""
     command = shlex.split(page.locator("#command").inner_text())
     assert command[:3] == ["impactlab", "predict", "surrogate.nc"]
@@ -104,9 +101,7 @@ def predicted(page: Page, folder: Path) -> dict[str, list[str]]:
 
 
 @pytest.mark.chromium
-def test_moved_sliders_show_what_predict_prints(
-    explorer: Page, folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_moved_sliders_show_what_predict_prints(explorer, folder, monkeypatch):
     monkeypatch.setenv("COLUMNS", "200")
     rng, seen = np.random.default_rng(5), set()
     for shares in [np.zeros(6), np.ones(6), *rng.uniform(size=(5, 6))]:
@@ -123,7 +118,7 @@ def test_moved_sliders_show_what_predict_prints(
 
 
 @pytest.mark.chromium
-def test_no_number_outside_the_range(explorer: Page, folder: Path) -> None:
+def test_no_number_outside_the_range(explorer, folder):
     before = shown(explorer, "peak_force")
     for text in ("29.3", "26.3", ""):
         explorer.fill("#beam_depth", text)
@@ -139,7 +134,7 @@ def test_no_number_outside_the_range(explorer: Page, folder: Path) -> None:
 
 
 @pytest.mark.chromium
-def test_the_curve_passes_through_the_number_and_follows_the_choice(explorer: Page) -> None:
+def test_the_curve_passes_through_the_number_and_follows_the_choice(explorer):
     path = "#response-peak_force path"  # solid, or dashed where it is extrapolated
     point = "#response-peak_force .point"
     for name in ("velocity", "sphere_radius"):
@@ -153,7 +148,7 @@ def test_the_curve_passes_through_the_number_and_follows_the_choice(explorer: Pa
 
 @pytest.mark.chromium
 @pytest.mark.parametrize("width", [420, 1300])
-def test_nothing_is_wider_than_the_window(explorer: Page, width: int) -> None:
+def test_nothing_is_wider_than_the_window(explorer, width):
     explorer.set_viewport_size({"width": width, "height": 900})
     assert explorer.evaluate("document.documentElement.scrollWidth") <= width
     slider, curve = explorer.locator("#velocity-slider"), explorer.locator("svg").first
@@ -162,7 +157,7 @@ def test_nothing_is_wider_than_the_window(explorer: Page, width: int) -> None:
     assert all(0 <= box["y"] < 900 for box in both), "slider and curve are not seen together"
 
 
-def test_what_is_refused_is_named_with_the_reason(folder: Path, page: type[Any]) -> None:
+def test_what_is_refused_is_named_with_the_reason(folder, page):
     explorer = page((folder / "report_explorer.html").read_text("utf-8"))
     assert "Restitution : the response does not vary: there is none." in explorer.text
     assert [section["id"] for section in explorer.named("section")] == [
@@ -172,9 +167,7 @@ def test_what_is_refused_is_named_with_the_reason(folder: Path, page: type[Any])
     ]
 
 
-def test_without_a_good_surrogate_there_is_no_page(
-    sample: tuple[xr.Dataset, xr.Dataset], folder: Path
-) -> None:
+def test_without_a_good_surrogate_there_is_no_page(sample, folder):
     runs, found = sample
     poor = found.assign(surrogate_verdict=found["surrogate_verdict"].where(False, 1))
     write_report(runs, poor, folder, folder / "report.html")

@@ -1,28 +1,25 @@
 """Convergence and sensitivity in the report."""
 
-from typing import Any
-
 import numpy as np
 
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.variables import RESPONSES
 
-Study = Any
 NODES = "Convergence in nodes along the span: 17 points, Gauss-Lobatto"
 POINTS = "Convergence in integration points over the depth: 401 nodes, Gauss-Lobatto"
 
 
-def _row(page: Any, table: str, head: str) -> list[str]:
+def _row(page, table, head):
     return next(row for row in page.tables[table] if row[0].startswith(head))
 
 
-def _list(page: Any, start: str) -> str:
+def _list(page, start):
     """The list item that starts so."""
     at = page.text.index(start)
     return str(page.text[at : at + 400])
 
 
-def test_verdicts_are_told_by_response(report: Any, discretisation_study: Study) -> None:
+def test_verdicts_are_told_by_response(report, discretisation_study):
     runs, analysis = discretisation_study
     coarse = {"response": "peak_force", "points": runs["points"].min().item()}
     analysis["nodes_verdict"].loc[coarse] = 2
@@ -43,8 +40,8 @@ def test_verdicts_are_told_by_response(report: Any, discretisation_study: Study)
 
 
 def test_the_largest_numbers_over_the_grid_are_shown_and_dashes_where_there_are_none(
-    report: Any, discretisation_study: Study
-) -> None:
+    report, discretisation_study
+):
     runs, analysis = discretisation_study
     strain = {"response": "peak_plastic_strain"}
     analysis["nodes_observed_order"].loc[strain] = np.nan
@@ -62,9 +59,7 @@ def test_the_largest_numbers_over_the_grid_are_shown_and_dashes_where_there_are_
     assert _row(page, POINTS, "Impulse")[2] == "none of this study"
 
 
-def test_what_is_refined_along_and_what_has_no_limit_is_said(
-    report: Any, discretisation_study: Study
-) -> None:
+def test_what_is_refined_along_and_what_has_no_limit_is_said(report, discretisation_study):
     runs, analysis = discretisation_study
     flags = {"flag_meanings": "monotone stalled not_convergent_by_design"}
     analysis["nodes_behaviour"].attrs |= flags
@@ -79,7 +74,7 @@ def test_what_is_refined_along_and_what_has_no_limit_is_said(
     assert "behaviour: not convergent by design" in _row(page, NODES, "Peak plastic strain")[1]
 
 
-def test_points_needed_by_each_rule(report: Any, discretisation_study: Study) -> None:
+def test_points_needed_by_each_rule(report, discretisation_study):
     runs, analysis = discretisation_study
     where = {"response": "impulse", "rule": "layers"}
     analysis["points_needed"].loc[where] = 17.0
@@ -92,7 +87,7 @@ def test_points_needed_by_each_rule(report: Any, discretisation_study: Study) ->
     assert _row(page, POINTS, "Impulse")[2:] == ["5", "5", "17", "1.5 %"]
 
 
-def test_the_time_step_has_a_table_and_a_caution(report: Any, time_step_study: Study) -> None:
+def test_the_time_step_has_a_table_and_a_caution(report, time_step_study):
     runs, analysis = time_step_study
     analysis["time_step_verdict"].loc[{"response": "impulse"}] = 1
     page = report(runs, analysis)
@@ -103,7 +98,7 @@ def test_the_time_step_has_a_table_and_a_caution(report: Any, time_step_study: S
     assert NODES not in page.tables
 
 
-def test_undefined_indices_are_said(report: Any, sobol_study: Study) -> None:
+def test_undefined_indices_are_said(report, sobol_study):
     page = report(*sobol_study)
     table = "Sobol indices, first order, with half-widths of the 95 % intervals"
     assert _row(page, table, "Number of contacts")[1:] == 4 * ["undefined"]
@@ -112,7 +107,7 @@ def test_undefined_indices_are_said(report: Any, sobol_study: Study) -> None:
     assert "meaning of constant" in page.text
 
 
-def test_the_confidence_is_that_of_the_analysis(report: Any, sobol_study: Study) -> None:
+def test_the_confidence_is_that_of_the_analysis(report, sobol_study):
     runs, analysis = sobol_study
     analysis.attrs["confidence"] = 0.9
     page = report(runs, analysis)
@@ -124,14 +119,14 @@ def test_the_confidence_is_that_of_the_analysis(report: Any, sobol_study: Study)
         assert "90 % interval" in CATALOGUE[name].caption(runs, analysis)
 
 
-def test_no_significant_share_is_said(report: Any, sobol_study: Study) -> None:
+def test_no_significant_share_is_said(report, sobol_study):
     runs, analysis = sobol_study
     analysis["total_order_interval"][:] = 2.0
     page = report(runs, analysis)
     assert ": no parameter stands out from the noise" in page.text
 
 
-def test_unsound_indices_carry_a_warning(report: Any, sobol_study: Study) -> None:
+def test_unsound_indices_carry_a_warning(report, sobol_study):
     runs, analysis = sobol_study
     analysis["sensitivity_verdict"].loc[{"response": "impulse"}] = 2
     page = report(runs, analysis)
@@ -139,7 +134,7 @@ def test_unsound_indices_carry_a_warning(report: Any, sobol_study: Study) -> Non
     assert page.text.count("meaning of failed_runs") == 1
 
 
-def test_sections_without_an_analysis_are_left_out(report: Any, velocity_study: Study) -> None:
+def test_sections_without_an_analysis_are_left_out(report, velocity_study):
     page = report(*velocity_study)
     ids = [attrs.get("id") for attrs in page.named("section")]
     assert "convergence" not in ids

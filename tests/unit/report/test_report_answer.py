@@ -1,7 +1,5 @@
 """The answer that opens a report."""
 
-from typing import Any
-
 import numpy as np
 import samples
 import xarray as xr
@@ -13,7 +11,7 @@ from impactlab.report.answer import LINES, answers, entries
 from impactlab.report.convergence import convergence
 
 
-def test_of_a_sample_names_what_matters_with_share_interval_and_verdict() -> None:
+def test_of_a_sample_names_what_matters_with_share_interval_and_verdict():
     runs = samples.sample(64, 4)[["peak_force", "remote_plastic_strain", "status"]]
     analysis = samples.indices(runs)
     analysis["total_order_numerical"][:] = 0.0
@@ -30,7 +28,7 @@ def test_of_a_sample_names_what_matters_with_share_interval_and_verdict() -> Non
     assert answers(runs, analysis)[0].endswith("(± 2) (2 of 64 runs missing).")
 
 
-def test_of_a_grid_gives_ranges_by_what_drives_them(velocity_study: Any) -> None:
+def test_of_a_grid_gives_ranges_by_what_drives_them(velocity_study):
     lines = answers(*velocity_study)
     assert 1 <= len(lines) <= LINES
     assert lines[0].startswith("Impact velocity explains 95 to 100 % of the variation")
@@ -44,7 +42,7 @@ def test_of_a_grid_gives_ranges_by_what_drives_them(velocity_study: Any) -> None
     assert unknown not in entries(runs, analysis.assign(numerical_uncertainty=shares))[1]
 
 
-def test_of_a_convergence_study_gives_the_least_grid_however_bad_others_are() -> None:
+def test_of_a_convergence_study_gives_the_least_grid_however_bad_others_are():
     nodes, counts = np.array([51, 101, 201, 401, 801]), np.array([2, 5, 9])
     smooth = 1.0 + 50.0 / (nodes - 1.0) ** 2
     wild = 1.0 + 0.1 * (-1.0) ** np.arange(5)

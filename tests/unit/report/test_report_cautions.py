@@ -1,8 +1,5 @@
 """Cautions and notes: each where it matters, and only there."""
 
-from collections.abc import Iterable
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
@@ -10,14 +7,12 @@ from impactlab.report.cautions import beside, cautions, endings, notes
 from impactlab.solver.contact import CONTACT_LAWS, LAWS
 from impactlab.variables import WARNINGS
 
-Study = Any
 
-
-def _said(texts: Iterable[str], words: str) -> bool:
+def _said(texts, words):
     return any(words in text for text in texts)
 
 
-def test_plastic_strain_without_a_convergence_study(material_study: Study) -> None:
+def test_plastic_strain_without_a_convergence_study(material_study):
     runs, analysis = material_study
     words = "depends on the number of nodes, which this study does not vary"
     assert beside(runs, analysis, "peak_plastic_strain") == words
@@ -28,11 +23,11 @@ def test_plastic_strain_without_a_convergence_study(material_study: Study) -> No
     assert beside(elastic, analysis, "peak_plastic_strain") == ""
 
 
-def test_a_verdict_of_its_own_takes_the_place(discretisation_study: Study) -> None:
+def test_a_verdict_of_its_own_takes_the_place(discretisation_study):
     assert beside(*discretisation_study, "peak_plastic_strain") == ""
 
 
-def test_energy_imbalance_and_restitution_above_one(material_study: Study) -> None:
+def test_energy_imbalance_and_restitution_above_one(material_study):
     runs, analysis = material_study
     assert beside(runs, analysis, "energy_error") == beside(runs, analysis, "restitution") == ""
     runs["energy_error"][0, 0, :] = 0.02
@@ -41,9 +36,7 @@ def test_energy_imbalance_and_restitution_above_one(material_study: Study) -> No
     assert beside(runs, analysis, "restitution") == "above 1 in 1 run"
 
 
-def test_a_doubt_stands_beside_its_number_in_the_answer_and_in_the_table(
-    report: Any, material_study: Study
-) -> None:
+def test_a_doubt_stands_beside_its_number_in_the_answer_and_in_the_table(report, material_study):
     runs, analysis = material_study
     runs["restitution"][1, 0, 0] = 1.05
     page = report(runs, analysis)
@@ -55,7 +48,7 @@ def test_a_doubt_stands_beside_its_number_in_the_answer_and_in_the_table(
     assert page.text.count("above 1 in 1 run") == 2
 
 
-def test_a_run_that_lacks_a_response_has_not_failed(velocity_study: Study, failing: Any) -> None:
+def test_a_run_that_lacks_a_response_has_not_failed(velocity_study, failing):
     runs, _ = velocity_study
     assert endings(runs) == ""
     runs["restitution"][0, 0] = np.nan
@@ -63,7 +56,7 @@ def test_a_run_that_lacks_a_response_has_not_failed(velocity_study: Study, faili
     assert endings(failing(runs, {"velocity": 5})) == "2 failed, 1 without an answer"
 
 
-def test_runs_whose_contact_law_created_energy_are_counted(material_study: Study) -> None:
+def test_runs_whose_contact_law_created_energy_are_counted(material_study):
     runs, _ = material_study
     words = "the contact law created energy"
     assert not _said(cautions(runs), words)
@@ -73,9 +66,7 @@ def test_runs_whose_contact_law_created_energy_are_counted(material_study: Study
     assert _said(cautions(runs), f"In 3 of 24 runs {words}")
 
 
-def test_inputs_outside_the_data_of_the_contact_law_stand_beside_its_responses(
-    material_study: Study,
-) -> None:
+def test_inputs_outside_the_data_of_the_contact_law_stand_beside_its_responses(material_study):
     runs, analysis = material_study
     assert beside(runs, analysis, "peak_force") == ""
     runs["remarks"] = xr.zeros_like(runs["status"])
@@ -84,12 +75,12 @@ def test_inputs_outside_the_data_of_the_contact_law_stand_beside_its_responses(
     assert _said(cautions(runs), "In 3 of 24 runs the beam's hardening modulus is above")
 
 
-def test_a_study_without_trouble_has_no_caution(material_study: Study) -> None:
+def test_a_study_without_trouble_has_no_caution(material_study):
     runs, _ = material_study
     assert list(cautions(runs)) == []
 
 
-def test_notes_on_the_contact_law(velocity_study: Study) -> None:
+def test_notes_on_the_contact_law(velocity_study):
     runs, _ = velocity_study
     words = "creates energy"
     assert _said(notes(runs), words)
@@ -97,7 +88,7 @@ def test_notes_on_the_contact_law(velocity_study: Study) -> None:
     assert _said(notes(runs.sel(contact="stronge")), words)
 
 
-def test_notes_say_what_of_a_law_is_not_confirmed(laws_study: Study) -> None:
+def test_notes_say_what_of_a_law_is_not_confirmed(laws_study):
     runs, _ = laws_study
     doubted = [law for law in LAWS if CONTACT_LAWS[law].unconfirmed]
     assert sum(law in doubted for law in LAWS[:8]) == 6
@@ -108,7 +99,7 @@ def test_notes_say_what_of_a_law_is_not_confirmed(laws_study: Study) -> None:
     assert not _said(notes(runs.sel(contact=["hertz", "stronge"])), "not confirmed")
 
 
-def test_notes_on_responses(velocity_study: Study) -> None:
+def test_notes_on_responses(velocity_study):
     runs, _ = velocity_study
     kept = runs.sel(contact=["hertz"])
     assert _said(notes(kept[["contact_duration"]]), "that of the first contact")
@@ -117,7 +108,7 @@ def test_notes_on_responses(velocity_study: Study) -> None:
     assert list(notes(kept[["peak_force"]])) == []
 
 
-def test_notes_on_few_lobatto_points(discretisation_study: Study) -> None:
+def test_notes_on_few_lobatto_points(discretisation_study):
     runs, _ = discretisation_study
     words = "Few Lobatto points"
     assert _said(notes(runs), words)
@@ -125,7 +116,7 @@ def test_notes_on_few_lobatto_points(discretisation_study: Study) -> None:
     assert not _said(notes(runs.sel(rule=["layers"])), words)
 
 
-def test_note_on_the_modal_scheme(velocity_study: Study) -> None:
+def test_note_on_the_modal_scheme(velocity_study):
     runs, _ = velocity_study
     words = "The modal scheme"
     assert not _said(notes(runs.assign_coords(scheme="leapfrog")), words)
@@ -134,5 +125,5 @@ def test_note_on_the_modal_scheme(velocity_study: Study) -> None:
     assert _said(notes(varied), words)
 
 
-def test_no_note_applies_to_nothing() -> None:
+def test_no_note_applies_to_nothing():
     assert list(notes(xr.Dataset())) == []

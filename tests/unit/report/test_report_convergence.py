@@ -1,7 +1,6 @@
 """Answer, captions, panels and tables of a convergence study say the same of every response."""
 
 import re
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +21,7 @@ AXES = ("nodes", "points")
 
 
 @pytest.fixture(scope="module")
-def study() -> tuple[xr.Dataset, xr.Dataset]:
+def study():
     """Responses of every kind, one of them wild on coarse grids alone."""
     design = design_of(
         {
@@ -64,7 +63,7 @@ def study() -> tuple[xr.Dataset, xr.Dataset]:
     return runs, analyse(runs)
 
 
-def _answers(study: Any) -> dict[str, str]:
+def _answers(study):
     """Return by response the grid that the answer names, with what it says against others."""
     found = {}
     for head, text in (entry for line in entries(*study)[0] for entry in line):
@@ -77,7 +76,7 @@ def _answers(study: Any) -> dict[str, str]:
     return found
 
 
-def _captions(study: Any) -> dict[str, str]:
+def _captions(study):
     caption = CATALOGUE["nodes_convergence"].caption(*study)
     listed = re.search(r"uncertainty included: (.*?)\. ", caption)
     assert listed
@@ -88,25 +87,25 @@ def _captions(study: Any) -> dict[str, str]:
     return found
 
 
-def _warned(study: Any, axis: str) -> set[str]:
+def _warned(study, axis):
     caption = CATALOGUE[f"{axis}_convergence"].caption(*study)
     listed = re.search(r"Not converged on the finest grid: (.*?)\.", caption)
     assert listed
     return set(re.split(", | and |; ", re.sub(r" \([^()]*\)", "", listed[1])))
 
 
-def _rows(table: Any) -> dict[str, dict[str, str]]:
+def _rows(table):
     texts = [[getattr(cell, "text", cell) for cell in row] for row in table.rows]
     return {row[0].lower(): dict(zip(table.head, row, strict=True)) for row in texts}
 
 
-def _share(text: str) -> float:
+def _share(text):
     if "⁻" in text:  # a power of ten, far below the tolerance
         return 0.0
     return np.inf if text == "no bound" else float(text.removesuffix(" %").replace(",", "")) / 100
 
 
-def test_every_part_of_a_report_says_the_same(study: Any) -> None:
+def test_every_part_of_a_report_says_the_same(study):
     runs, _ = study
     grids, *tables = convergence(*study)[0].tables
     judged = dict(zip(AXES, (_rows(table) for table in tables), strict=True))
@@ -147,7 +146,7 @@ def test_every_part_of_a_report_says_the_same(study: Any) -> None:
             assert not all(sound) or "add up" in row["Doubts"]
 
 
-def test_the_study_shows_every_kind_of_verdict(study: Any) -> None:
+def test_the_study_shows_every_kind_of_verdict(study):
     """Otherwise the test above says little."""
     doubts = " ".join(_answers(study).values())
     for text in ("divergent", "by design", "tends to zero", "undetermined", "add up", "yet"):

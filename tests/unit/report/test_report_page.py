@@ -2,8 +2,6 @@
 
 import base64
 from itertools import pairwise
-from pathlib import Path
-from typing import Any
 from urllib.parse import unquote
 
 import numpy as np
@@ -16,14 +14,11 @@ from impactlab.report.page import drawn_data
 from impactlab.report.results import RUNS, open_stored, write_index
 from impactlab.report.study import write_report
 
-Study = Any
 STUDIES = ("velocity_study", "material_study", "discretisation_study", "sobol_study")
 
 
 @pytest.mark.parametrize("study", STUDIES)
-def test_a_page_needs_nothing_else_and_can_be_read_by_keyboard(
-    study: str, report: Any, request: pytest.FixtureRequest
-) -> None:
+def test_a_page_needs_nothing_else_and_can_be_read_by_keyboard(study, report, request):
     page = report(*request.getfixturevalue(study))
     assert page.open == []
     assert page.named("script") == page.named("link") == []
@@ -47,7 +42,7 @@ def test_a_page_needs_nothing_else_and_can_be_read_by_keyboard(
     assert all(attrs.get("scope") in ("row", "col") for attrs in page.named("th"))
 
 
-def test_figures_are_inside_numbered_and_described(results: Path, page: Any) -> None:
+def test_figures_are_inside_numbered_and_described(results, page):
     found = page((results / "velocity" / "report.html").read_text("utf-8"))
     images = found.named("img")
     assert len(images) == 4
@@ -60,7 +55,7 @@ def test_figures_are_inside_numbered_and_described(results: Path, page: Any) -> 
     assert "Duration of the first contact (a later sub-impact does not count)" in found.text
 
 
-def test_markup_in_a_study_is_text(report: Any, material_study: Study) -> None:
+def test_markup_in_a_study_is_text(report, material_study):
     runs, analysis = material_study
     nasty = '<script>alert("x")</script> & <b>bold</b>'
     for key in ("title", "description", "study_text", "source_revision"):
@@ -70,7 +65,7 @@ def test_markup_in_a_study_is_text(report: Any, material_study: Study) -> None:
     assert page.text.count(nasty) == 5  # the title stands in the head, too
 
 
-def test_a_missing_figure_says_what_to_do(results: Path, velocity_study: Study) -> None:
+def test_a_missing_figure_says_what_to_do(results, velocity_study):
     folder = results / "velocity" / "figures"
     (folder / "contact_duration.svg").unlink()
     with pytest.raises(FileNotFoundError, match=r"contact_duration\.svg is missing: draw"):
@@ -80,7 +75,7 @@ def test_a_missing_figure_says_what_to_do(results: Path, velocity_study: Study) 
         write_report(*velocity_study, folder, results / "velocity" / "report.html")
 
 
-def test_provenance_and_the_study_file_are_told(report: Any, material_study: Study) -> None:
+def test_provenance_and_the_study_file_are_told(report, material_study):
     runs, analysis = material_study
     page = report(runs, analysis)
     for key in ("source_revision", "versions", "processor", "study_sha256", "study_text"):
@@ -90,7 +85,7 @@ def test_provenance_and_the_study_file_are_told(report: Any, material_study: Stu
     assert "make study" in page.text
 
 
-def test_the_data_of_a_figure_are_thinned_evenly(tmp_path: Path) -> None:
+def test_the_data_of_a_figure_are_thinned_evenly(tmp_path):
     lines = ["panel,curve,x_label,y_label,category,x,y"]
     for curve in ("one", "two"):
         lines += [f"Force,{curve},Time (ms),Force (kN),,{at},{at * at}" for at in range(200)]
@@ -102,7 +97,7 @@ def test_the_data_of_a_figure_are_thinned_evenly(tmp_path: Path) -> None:
     assert [getattr(cell, "text", cell) for cell in table.rows[40]] == ["Force", "two", "0", "0"]
 
 
-def test_the_data_of_named_bars_are_all_told(tmp_path: Path) -> None:
+def test_the_data_of_named_bars_are_all_told(tmp_path):
     lines = ["panel,curve,x_label,y_label,category,x,y"]
     lines += [f"Force,first order,Share (–),,parameter {at},0.5,{at}" for at in range(100)]
     (tmp_path / "figure.csv").write_text("\n".join(lines))
@@ -111,13 +106,13 @@ def test_the_data_of_named_bars_are_all_told(tmp_path: Path) -> None:
     assert len(table.rows) == 100
 
 
-def _index(results: Path, page: Any, path: Path | None = None) -> Any:
+def _index(results, page, path=None):
     path = path or results / "index.html"
     write_index(results, path)
     return page(path.read_text("utf-8"))
 
 
-def test_links_every_report(results: Path, page: Any) -> None:
+def test_links_every_report(results, page):
     found = _index(results, page)
     assert found.open == []
     links = [attrs["href"] for attrs in found.named("a") if not attrs["href"].startswith("#")]
@@ -128,7 +123,7 @@ def test_links_every_report(results: Path, page: Any) -> None:
         assert answers(*datasets)[0] in found.text
 
 
-def test_addresses_are_relative_and_exist(results: Path, page: Any) -> None:
+def test_addresses_are_relative_and_exist(results, page):
     home = results.parent / "elsewhere" / "index.html"
     found = _index(results, page, home)
     addresses = [attrs["src"] for attrs in found.named("img")]
@@ -138,7 +133,7 @@ def test_addresses_are_relative_and_exist(results: Path, page: Any) -> None:
     assert found.named("img")[0]["alt"] == "Effect of the varied parameters"
 
 
-def _rewrite(runs: xr.Dataset, path: Path) -> None:
+def _rewrite(runs, path):
     """Write other runs, and the same analysis as made from them."""
     analysis = path.with_name("analysis.nc")
     write_netcdf(runs, path, "runs")
@@ -146,7 +141,7 @@ def _rewrite(runs: xr.Dataset, path: Path) -> None:
     write_netcdf(found, analysis, "analysis", read_netcdf(path, "runs"))
 
 
-def test_failures_are_told(results: Path, page: Any, failing: Any) -> None:
+def test_failures_are_told(results, page, failing):
     path = results / "velocity" / "runs.nc"
     runs = xr.load_dataset(path)
     runs = failing(runs.assign(impulse=runs["contact_duration"]), {"velocity": 0, "contact": 0})
@@ -155,7 +150,7 @@ def test_failures_are_told(results: Path, page: Any, failing: Any) -> None:
     assert "6 runs (grid), 1 failed, 1 without an answer" in _index(results, page).text
 
 
-def test_markup_and_odd_names_do_no_harm(results: Path, page: Any) -> None:
+def test_markup_and_odd_names_do_no_harm(results, page):
     odd = results / 'a "b" #1'
     (results / "velocity").rename(odd)
     runs = xr.load_dataset(odd / "runs.nc")
@@ -167,7 +162,7 @@ def test_markup_and_odd_names_do_no_harm(results: Path, page: Any) -> None:
     assert (results / unquote(link)).is_file()
 
 
-def test_folders_without_a_report_are_left_out(results: Path, page: Any) -> None:
+def test_folders_without_a_report_are_left_out(results, page):
     (results / "half").mkdir()
     (results / "half" / "runs.nc").touch()
     (results / "other").mkdir()
@@ -175,5 +170,5 @@ def test_folders_without_a_report_are_left_out(results: Path, page: Any) -> None
     assert len(_index(results, page).named("li")) == 1
 
 
-def test_an_empty_folder_says_what_to_do(tmp_path: Path, page: Any) -> None:
+def test_an_empty_folder_says_what_to_do(tmp_path, page):
     assert "make study" in _index(tmp_path, page).text

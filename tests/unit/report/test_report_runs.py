@@ -1,22 +1,18 @@
 """Sections on the runs: inputs, how the runs ended, and results."""
 
-from typing import Any
-
 import numpy as np
 
 from impactlab.analysis import distribution
 from impactlab.variables import RESPONSES, STATUS_FLAGS
 
-Study = Any
-
 STRONGE = "Stronge, unloading after Wang et al."
 
 
-def _row(page: Any, table: str, head: str) -> list[str]:
+def _row(page, table, head):
     return next(row for row in page.tables[table] if row[0].startswith(head))
 
 
-def test_varied_and_fixed_parameters_with_units(report: Any, material_study: Study) -> None:
+def test_varied_and_fixed_parameters_with_units(report, material_study):
     page = report(*material_study)
     varied = _row(page, "Varied parameters", "Yield stress")
     assert varied[1:] == ["250, 345, 450, 600 MPa", "4", "beam_yield_stress"]
@@ -28,30 +24,28 @@ def test_varied_and_fixed_parameters_with_units(report: Any, material_study: Stu
     assert "beam_yield_stress" not in names
 
 
-def test_a_fixed_parameter_of_a_python_function(report: Any, material_study: Study) -> None:
+def test_a_fixed_parameter_of_a_python_function(report, material_study):
     runs, analysis = material_study
     runs = runs.assign_coords(gap=((), 0.003, {"long_name": "gap", "units": "m"}))
     fixed = "Parameters that are the same in every run"
     assert _row(report(runs, analysis), fixed, "Gap")[1:] == ["3 mm", "gap"]
 
 
-def test_a_varied_parameter_may_have_one_value_left(
-    report: Any, velocity_study: Study, failing: Any
-) -> None:
+def test_a_varied_parameter_may_have_one_value_left(report, velocity_study, failing):
     runs, analysis = velocity_study
     page = report(failing(runs.isel(velocity=1), {"contact": 0}), analysis)
     assert _row(page, "Varied parameters", "Impact velocity")[1:3] == ["0.99 m/s", "1"]
     assert page.tables["Runs without an answer"][1][0] == "contact law = Hertz"
 
 
-def test_a_long_grid_is_given_by_its_range(report: Any, material_study: Study) -> None:
+def test_a_long_grid_is_given_by_its_range(report, material_study):
     runs, analysis = material_study
     long = runs.isel(beam_yield_stress=np.tile([3, 1, 2, 0], 5))
     row = _row(report(long, analysis), "Varied parameters", "Yield stress")
     assert row[1:3] == ["250 to 600 MPa", "20"]
 
 
-def test_distributions_and_percentiles_of_a_sample(report: Any, sobol_study: Study) -> None:
+def test_distributions_and_percentiles_of_a_sample(report, sobol_study):
     runs, analysis = sobol_study
     runs["sphere_radius"].attrs = {
         "distribution": "lognormal",
@@ -72,9 +66,7 @@ def test_distributions_and_percentiles_of_a_sample(report: Any, sobol_study: Stu
         assert cell.startswith(f"{float(value):.4g}")
 
 
-def test_failed_runs_are_counted_named_and_explained(
-    report: Any, velocity_study: Study, failing: Any
-) -> None:
+def test_failed_runs_are_counted_named_and_explained(report, velocity_study, failing):
     runs, analysis = velocity_study
     broken = failing(runs, {"velocity": 5, "contact": 1})
     bit, words = STATUS_FLAGS["sphere_not_leaving"]
@@ -98,15 +90,13 @@ def test_failed_runs_are_counted_named_and_explained(
     assert "2 varied parameters · 0 figures · 1 failed, 1 without an answer" in page.text
 
 
-def test_no_failure_is_said_plainly(report: Any, velocity_study: Study) -> None:
+def test_no_failure_is_said_plainly(report, velocity_study):
     page = report(*velocity_study)
     assert "All 16 runs gave every response." in page.text
     assert "Reasons for what is missing" not in page.tables
 
 
-def test_failed_runs_of_a_sample_are_named_by_number(
-    report: Any, sobol_study: Study, failing: Any
-) -> None:
+def test_failed_runs_of_a_sample_are_named_by_number(report, sobol_study, failing):
     runs, analysis = sobol_study
     page = report(failing(runs, {"run": slice(10, 40)}), analysis)
     table = page.tables["Runs without an answer (the first 20 of 30)"]
@@ -114,7 +104,7 @@ def test_failed_runs_of_a_sample_are_named_by_number(
     assert table[1][0].startswith("run 10, impact velocity = ")
 
 
-def test_ranges_of_a_grid_say_where(report: Any, velocity_study: Study, failing: Any) -> None:
+def test_ranges_of_a_grid_say_where(report, velocity_study, failing):
     runs, analysis = velocity_study
     runs["impulse"] *= np.nan  # without any value: missing, not zero
     page = report(failing(runs, {"velocity": -1, "contact": 0}), analysis)

@@ -1,8 +1,5 @@
 """The report of a sample: its sections, sentences, tables and files."""
 
-from pathlib import Path
-from typing import Any
-
 import html5lib
 import numpy as np
 import pytest
@@ -20,12 +17,11 @@ from impactlab.report.sensitivity import with_margin
 from impactlab.report.study import write_report
 from impactlab.verdicts import flagged
 
-Study = tuple[xr.Dataset, xr.Dataset]
 PEAK = {"response": "peak_force"}
 
 
 @pytest.fixture
-def study() -> Study:
+def study():
     """Two responses, four parameters, all indices; no number is in doubt for numerical error."""
     runs = samples.sample(64, 4)[["peak_force", "remote_plastic_strain", "status"]]
     analysis = samples.indices(runs)
@@ -33,15 +29,15 @@ def study() -> Study:
     return runs, analysis
 
 
-def _titles(page: Any) -> list[str]:
+def _titles(page):
     return [attrs["id"] for attrs in page.named("section")]
 
 
-def _table(page: Any, start: str) -> list[list[str]]:
+def _table(page, start):
     return next(rows for caption, rows in page.tables.items() if caption.startswith(start))
 
 
-def test_sections_stand_in_the_order_of_sensobol(report: Any, study: Study) -> None:
+def test_sections_stand_in_the_order_of_sensobol(report, study):
     assert _titles(report(*study)) == [
         "answer",
         "ranking",
@@ -65,7 +61,7 @@ def test_sections_stand_in_the_order_of_sensobol(report: Any, study: Study) -> N
     ]
 
 
-def test_indices_over_time_are_told_with_what_was_left_out(report: Any, study: Study) -> None:
+def test_indices_over_time_are_told_with_what_was_left_out(report, study):
     page = report(*study)
     assert "A base sample is left out where one of its runs failed" in page.text
     rows = _table(page, "Generalised Sobol indices, first order")
@@ -84,7 +80,7 @@ def test_indices_over_time_are_told_with_what_was_left_out(report: Any, study: S
     assert "runs left out" in rows[2][0]
 
 
-def test_words_have_means_and_no_surrogate(report: Any, study: Study) -> None:
+def test_words_have_means_and_no_surrogate(report, study):
     runs, analysis = study
     words = ["mjg", "brake", "thornton"]  # the last is never drawn
     choice = {"distribution": "choice", "values": words, "weights": [0.75, 0.25, 1e-9]}
@@ -106,7 +102,7 @@ def test_words_have_means_and_no_surrogate(report: Any, study: Study) -> None:
     assert "no polynomial follows words (contact law)" in page.text
 
 
-def test_correlated_inputs_are_stated(report: Any, study: Study) -> None:
+def test_correlated_inputs_are_stated(report, study):
     runs, analysis = study
     first, second = runs.attrs["varied"][:2]
     runs = runs.assign_attrs(method="delta", rank_correlations=0.5, correlated=f"{first} {second}")
@@ -120,7 +116,7 @@ def test_correlated_inputs_are_stated(report: Any, study: Study) -> None:
     assert "its terms assume independent parameters" in page.text
 
 
-def test_figures_are_numbered_as_they_stand(study: Study, tmp_path: Path, page: Any) -> None:
+def test_figures_are_numbered_as_they_stand(study, tmp_path, page):
     runs, analysis = study
     kept = ["first_order", "total_order", "sensitivity_verdict", "numerical_uncertainty"]
     draw_all(runs, analysis[kept], tmp_path / "figures")
@@ -137,9 +133,7 @@ def test_figures_are_numbered_as_they_stand(study: Study, tmp_path: Path, page: 
     html5lib.HTMLParser(strict=True).parse(text)
 
 
-def test_shares_that_only_the_numerical_error_hides_are_not_called_insignificant(
-    report: Any, study: Study
-) -> None:
+def test_shares_that_only_the_numerical_error_hides_are_not_called_insignificant(report, study):
     runs, analysis = study
     for order in ("first_order", "total_order"):
         analysis[f"{order}_numerical"].loc[PEAK] = 0.9
@@ -158,9 +152,7 @@ def test_shares_that_only_the_numerical_error_hides_are_not_called_insignificant
     ("code", "told", "missing"),
     [(0, "measured where the first runs", "only a bound"), (1, "only a bound", "measured where")],
 )
-def test_what_the_numerical_error_rests_on_is_told(
-    report: Any, study: Study, code: int, told: str, missing: str
-) -> None:
+def test_what_the_numerical_error_rests_on_is_told(report, study, code, told, missing):
     runs, analysis = study
     codes = xr.full_like(analysis["response"], code, dtype=np.int8)
     analysis["numerical_from"] = flagged(codes, NumericalFrom, "what it rests on")
@@ -171,7 +163,7 @@ def test_what_the_numerical_error_rests_on_is_told(
     assert missing not in page.text
 
 
-def test_the_numerical_warning_stands_in_the_table(report: Any, study: Study) -> None:
+def test_the_numerical_warning_stands_in_the_table(report, study):
     runs, analysis = study
     analysis["total_order_numerical"].loc[PEAK] = 0.5
     page = report(runs, analysis)
@@ -181,7 +173,7 @@ def test_the_numerical_warning_stands_in_the_table(report: Any, study: Study) ->
     assert _table(page, "Numerical uncertainty")[1] == ["Peak force", "0.5 %", "0.2 %", "0", "0.5"]
 
 
-def test_ranks_are_shown_as_far_as_known(report: Any, study: Study) -> None:
+def test_ranks_are_shown_as_far_as_known(report, study):
     runs, analysis = study
     analysis["total_order"].loc[PEAK] = [0.5, 0.46, 0.2, 0.01]
     page = report(runs, analysis)
@@ -189,7 +181,7 @@ def test_ranks_are_shown_as_far_as_known(report: Any, study: Study) -> None:
     assert rows[1] == ["Peak force", "1–2", "1–2", "3", "noise"]
 
 
-def test_the_verdict_stands_beside_every_number(report: Any, study: Study) -> None:
+def test_the_verdict_stands_beside_every_number(report, study):
     page = report(*study)
     starts = ("Sobol", "Ranks", "Delta", "PAWN", "Regression", "Elementary", "The surrogate on")
     tables = [rows for caption, rows in page.tables.items() if caption.startswith(starts)]
@@ -198,7 +190,7 @@ def test_the_verdict_stands_beside_every_number(report: Any, study: Study) -> No
         assert rows[2][0] == "Remote plastic strainmostly constant"
 
 
-def test_other_families_answer_in_their_own_measure(study: Study) -> None:
+def test_other_families_answer_in_their_own_measure(study):
     runs, analysis = study
     sobol = [name for name in analysis if "_order" in name and "delta" not in name]
     morris = analysis.drop_vars(sobol)
@@ -219,7 +211,7 @@ def test_other_families_answer_in_their_own_measure(study: Study) -> None:
 
 
 @pytest.mark.parametrize("surrogate", [True, False])
-def test_first_orders_alone_make_a_whole_report(report: Any, study: Study, surrogate: bool) -> None:
+def test_first_orders_alone_make_a_whole_report(report, study, surrogate):
     """Some methods give no total order."""
     runs, analysis = study
     own = ["first_order", "first_order_interval", "first_order_numerical", "sensitivity_verdict"]
@@ -243,7 +235,7 @@ def test_first_orders_alone_make_a_whole_report(report: Any, study: Study, surro
         figures[name].plot(runs, analysis)
 
 
-def test_a_surrogate_that_disagrees_or_is_poor_is_named(study: Study) -> None:
+def test_a_surrogate_that_disagrees_or_is_poor_is_named(study):
     runs, analysis = study
     analysis["surrogate_total_order"].loc[PEAK] = [0.5, 0.13, 0.0, 0.0]
     analysis["surrogate_q2"].loc[PEAK] = 0.93
@@ -257,7 +249,7 @@ def test_a_surrogate_that_disagrees_or_is_poor_is_named(study: Study) -> None:
     assert (cell.text, cell.detail) == ("0.93", "poor: at least 0.81")
 
 
-def test_imputed_values_are_told(report: Any, study: Study) -> None:
+def test_imputed_values_are_told(report, study):
     runs, analysis = study
     analysis["imputed_share"].loc[PEAK] = 0.004
     page = report(runs, analysis)
@@ -265,7 +257,7 @@ def test_imputed_values_are_told(report: Any, study: Study) -> None:
     assert told in page.text
 
 
-def test_groups_take_the_place_of_parameters(report: Any) -> None:
+def test_groups_take_the_place_of_parameters(report):
     runs = samples.sample(64, 4)[["peak_force", "status"]]
     runs.attrs["groups"] = ["speed", "beam_material", "beam_material", "beam_material"]
     page = report(runs, samples.indices(runs, ["speed", "beam_material"]))
@@ -273,7 +265,7 @@ def test_groups_take_the_place_of_parameters(report: Any) -> None:
     assert _table(page, "Sobol indices, first order")[0][1:3] == ["Speed", "Beam material"]
 
 
-def test_responses_and_parameters_of_another_solver(report: Any) -> None:
+def test_responses_and_parameters_of_another_solver(report):
     """A test function has neither impacts nor units."""
     random = np.random.default_rng(0)
     x = random.uniform(-np.pi, np.pi, 64)
@@ -310,11 +302,11 @@ def test_responses_and_parameters_of_another_solver(report: Any) -> None:
         (np.nan, 0.1, "undefined"),
     ],
 )
-def test_digits_follow_the_interval(value: float, margin: float, text: str) -> None:
+def test_digits_follow_the_interval(value, margin, text):
     assert with_margin(value, margin) == text
 
 
-def test_limits_open_the_answer_and_the_report(report: Any) -> None:
+def test_limits_open_the_answer_and_the_report(report):
     """The 40 failed runs of 400 may all exceed it, or none."""
     runs = samples.sample(400, 4, failures=40)[["peak_force", "status"]]
     limit = {"limited": "peak_force", "limits": 35e3}
@@ -343,7 +335,7 @@ def test_limits_open_the_answer_and_the_report(report: Any) -> None:
 
 
 @pytest.mark.parametrize(("above", "told"), [(0, "at most 0.92 %"), (400, "at least 99.08 %")])
-def test_none_or_all_above_the_limit_is_told_as_a_bound(above: int, told: str) -> None:
+def test_none_or_all_above_the_limit_is_told_as_a_bound(above, told):
     """1 - 0.025 ** (1 / 400) = 0.918 %."""
     runs = samples.sample(400, 4)[["peak_force", "status"]]
     limit = {"limited": "peak_force", "limits": 0.0 if above else 1e9}
@@ -353,7 +345,7 @@ def test_none_or_all_above_the_limit_is_told_as_a_bound(above: int, told: str) -
     assert answers(runs, distribution.analysis(runs))[0] == expected
 
 
-def test_a_design_that_is_no_sample_of_the_distribution_says_so(report: Any, study: Study) -> None:
+def test_a_design_that_is_no_sample_of_the_distribution_says_so(report, study):
     runs, analysis = study
     page = report(runs.assign_attrs(method="morris"), analysis)
     assert "There are no moments and percentiles: trajectories step" in page.text

@@ -1,11 +1,8 @@
 """The page of a verification: the verdict first, failures never folded away."""
 
 from itertools import pairwise
-from pathlib import Path
-from typing import Any
 
 import pytest
-import xarray as xr
 
 from impactlab.figures.draw import draw_findings
 from impactlab.files import write_netcdf
@@ -15,10 +12,10 @@ from impactlab.verification.outcomes import packed
 
 
 @pytest.fixture
-def told(tmp_path: Path, page: Any) -> Any:
+def told(tmp_path, page):
     """Writes a page, without figures, and reads it back."""
 
-    def write(findings: xr.Dataset) -> Any:
+    def write(findings):
         (tmp_path / "captions.json").write_text("{}")
         write_verification(findings, tmp_path, tmp_path / "report.html")
         return page((tmp_path / "report.html").read_text("utf-8"))
@@ -26,7 +23,7 @@ def told(tmp_path: Path, page: Any) -> Any:
     return write
 
 
-def test_the_verdict_is_at_the_top_and_names_what_failed(told: Any, findings: xr.Dataset) -> None:
+def test_the_verdict_is_at_the_top_and_names_what_failed(told, findings):
     found = told(findings)
     assert "Verification failed" in found.text[:600]
     assert "Failed: 3 of 21 comparisons of 4 checks; 3 did not pass." in found.text
@@ -39,19 +36,17 @@ def test_the_verdict_is_at_the_top_and_names_what_failed(told: Any, findings: xr
     assert sections[2:6] == ["broken", "bad", "void", "good"]
 
 
-def test_all_passed_is_said_plainly(told: Any, outcomes: Any) -> None:
+def test_all_passed_is_said_plainly(told, outcomes):
     found = told(packed(outcomes[:1]))
     assert "Passed: all 3 comparisons of 1 check are within their tolerance." in found.text
     assert "failed" not in found.text.replace("failed ones first", "").replace("0 failed", "")
 
 
-def test_no_check_at_all_is_no_success(told: Any) -> None:
+def test_no_check_at_all_is_no_success(told):
     assert "Verification failed" in told(packed([])).text
 
 
-def test_rows_tell_both_values_the_difference_and_the_tolerance(
-    told: Any, findings: xr.Dataset
-) -> None:
+def test_rows_tell_both_values_the_difference_and_the_tolerance(told, findings):
     head, *rows = told(findings).tables["Passed: A good check (3 comparisons)"]
     assert head == [
         "Quantity",
@@ -67,7 +62,7 @@ def test_rows_tell_both_values_the_difference_and_the_tolerance(
     assert rows[2][2:] == ["0.03 1/m", "0.031 1/m", "3.2 %of the peak", "10 %", "passed"]
 
 
-def test_failed_rows_are_open_and_passed_ones_folded(told: Any, findings: xr.Dataset) -> None:
+def test_failed_rows_are_open_and_passed_ones_folded(told, findings):
     found = told(findings)
     assert len(found.named("details")) == 2, "one of them the provenance"
     opened = found.source.index("<details>")
@@ -81,7 +76,7 @@ def test_failed_rows_are_open_and_passed_ones_folded(told: Any, findings: xr.Dat
     assert rows[0][2] == "missing"
 
 
-def test_sources_reasons_and_provenance_are_told(told: Any, findings: xr.Dataset) -> None:
+def test_sources_reasons_and_provenance_are_told(told, findings):
     found = told(findings)
     assert "Independent values: Hertz 1881." in found.text
     assert "ValueError: <no> (a.py)" in found.text  # escaped, not markup
@@ -91,9 +86,7 @@ def test_sources_reasons_and_provenance_are_told(told: Any, findings: xr.Dataset
     assert findings.attrs["study_text"].strip() in found.text
 
 
-def test_the_page_is_sound_and_holds_its_figures(
-    findings: xr.Dataset, tmp_path: Path, page: Any
-) -> None:
+def test_the_page_is_sound_and_holds_its_figures(findings, tmp_path, page):
     draw_findings(findings, tmp_path)
     write_verification(findings, tmp_path, tmp_path / "report.html")
     found = page((tmp_path / "report.html").read_text("utf-8"))
@@ -108,9 +101,7 @@ def test_the_page_is_sound_and_holds_its_figures(
     assert all(after - before <= 1 for before, after in pairwise(levels))
 
 
-def test_the_index_lists_it_with_its_counts(
-    results: Path, findings: xr.Dataset, outcomes: Any, page: Any
-) -> None:
+def test_the_index_lists_it_with_its_counts(results, findings, outcomes, page):
     for name, dataset in {"checks": findings, "sound": packed(outcomes[:1])}.items():
         (results / name).mkdir()
         (results / name / "report.html").touch()
@@ -122,7 +113,7 @@ def test_the_index_lists_it_with_its_counts(
     assert "6 runs (grid), none failed" in text
 
 
-def test_stored_files_tell_their_kind(findings: xr.Dataset, results: Path) -> None:
+def test_stored_files_tell_their_kind(findings, results):
     path, runs = results / "findings.nc", results / "velocity" / "runs.nc"
     write_netcdf(findings, path, "findings")
     for kind, paths in (FINDINGS, [path]), (RUNS, [runs, runs.with_name("analysis.nc")]):

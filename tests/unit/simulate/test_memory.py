@@ -94,7 +94,7 @@ ALLOCATORS = {
 }
 
 
-def digests(folder: Path, settings: dict[str, str]) -> dict[str, str]:
+def digests(folder, settings):
     """Digest of each answer, and the surrogates' predictions, under these settings."""
     (folder / "study.yaml").write_text(STUDY)
     tests = str(Path(__file__).parents[2])
@@ -115,7 +115,7 @@ def digests(folder: Path, settings: dict[str, str]) -> dict[str, str]:
 
 
 @pytest.mark.long
-def test_what_is_freed_is_not_read(tmp_path: Path) -> None:
+def test_what_is_freed_is_not_read(tmp_path):
     (tmp_path / "plain").mkdir()
     plain = digests(tmp_path / "plain", {})
     assert len(plain) == 14
@@ -124,11 +124,11 @@ def test_what_is_freed_is_not_read(tmp_path: Path) -> None:
         assert digests(tmp_path / name, settings) == plain, name
 
 
-def test_a_kernel_that_makes_an_array_does_not_compile_without_owning_it() -> None:
+def test_a_kernel_that_makes_an_array_does_not_compile_without_owning_it():
     """So that none can be freed while another function reads it."""
 
     @compiled
-    def sum_of_ones(n: int) -> float:
+    def sum_of_ones(n):
         return float(np.ones(n)[0])
 
     with pytest.raises(numba.core.errors.NumbaError):

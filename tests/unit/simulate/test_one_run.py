@@ -2,7 +2,6 @@
 
 import warnings
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -191,8 +190,8 @@ def test_the_corrected_impact_is_within_2_percent_of_3d(velocity, solid):
     ],
 )
 def test_a_short_duration_names_what_is_missing_and_lasts_as_it_says(
-    velocity: float, model: str, duration: str, missing: str
-) -> None:
+    velocity, model, duration, missing
+):
     impact = replace(il.paper_impact(velocity), beam_model=model)
     grid = il.Discretisation(nodes=31)
     with pytest.warns(il.TooShortWarning, match=f"too short for .*{missing}") as caught:
@@ -203,12 +202,12 @@ def test_a_short_duration_names_what_is_missing_and_lasts_as_it_says(
         assert il.simulate(impact, grid, duration=lasting, samples=2).status == 0
 
 
-def test_no_duration_is_promised_where_a_long_one_gave_no_rebound() -> None:
+def test_no_duration_is_promised_where_a_long_one_gave_no_rebound():
     with pytest.warns(il.TooShortWarning, match=r"restitution: try a longer one;"):
         il.simulate(il.paper_impact(0.3), il.Discretisation(nodes=41), duration="60 ms", samples=2)
 
 
-def test_many_short_runs_give_one_warning() -> None:
+def test_many_short_runs_give_one_warning():
     impact = replace(il.paper_impact(), beam_model="rigid")
     words = r"too short for contact_duration.* in 1 of 2 runs: take about 1\.8 ms"
     with pytest.warns(il.TooShortWarning, match=words) as caught:
@@ -217,7 +216,7 @@ def test_many_short_runs_give_one_warning() -> None:
 
 
 @pytest.mark.parametrize("duration", [2, 0.5, "2", "2."])
-def test_seconds_without_a_unit_are_refused_as_in_studies(duration: Any) -> None:
+def test_seconds_without_a_unit_are_refused_as_in_studies(duration):
     sampling = il.Grid(parameters={"velocity": [1, 2]})
     reason = "is in seconds without a unit, and impacts last milliseconds"
     with pytest.raises(ValueError, match=reason):
@@ -228,6 +227,6 @@ def test_seconds_without_a_unit_are_refused_as_in_studies(duration: Any) -> None
         il.Study(title="Seconds", duration=duration, sampling=sampling)
 
 
-def test_an_impossible_value_is_refused_as_in_studies() -> None:
+def test_an_impossible_value_is_refused_as_in_studies():
     with pytest.raises(ValueError, match="velocity: "):
         il.simulate(il.paper_impact(1e-10), il.Discretisation(nodes=11), duration="1 ms")

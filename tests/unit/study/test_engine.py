@@ -44,7 +44,7 @@ def test_timeouts_at_the_end_of_dask_are_not_logged(caplog, error, logged):
     with Engine().client():
         pass
 
-    async def leave() -> None:
+    async def leave():
         asyncio.get_running_loop().create_future().set_exception(error)
 
     asyncio.run(leave())

@@ -1,7 +1,6 @@
 """Verdicts on manufactured sequences along each axis, and what must never pass unnoticed."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +14,7 @@ SPACINGS = 1.0 / (np.array(NODES[::-1]) - 1.0)
 Build = Callable[..., xr.Dataset]
 
 
-def _h(nodes: Any) -> Any:
+def _h(nodes):
     return 1.0 / (nodes - 1.0)
 
 
@@ -46,7 +45,7 @@ def _h(nodes: Any) -> Any:
         (np.array([5, np.nan, 5.2, 5.3, 5.4]), AxisVerdict.UNDETERMINED, np.nan),
     ],
 )
-def test_every_verdict(finest_first: Any, verdict: AxisVerdict, safety: float) -> None:
+def test_every_verdict(finest_first, verdict, safety):
     found = judge(finest_first, SPACINGS)
     assert found.verdict is verdict
     assert found.safety_factor == pytest.approx(safety, nan_ok=True)
@@ -64,13 +63,13 @@ def test_every_verdict(finest_first: Any, verdict: AxisVerdict, safety: float) -
         1.0 + 1e-3 * np.arange(5, 0, -1.0),
     ],
 )
-def test_strain_that_grows_without_limit_is_divergent(finest_first: Any) -> None:
+def test_strain_that_grows_without_limit_is_divergent(finest_first):
     found = judge(finest_first, SPACINGS)
     assert found.verdict is AxisVerdict.DIVERGENT
     assert np.isnan([found.extrapolated, found.gci]).all()
 
 
-def test_slow_growth_is_never_called_converged() -> None:
+def test_slow_growth_is_never_called_converged():
     # order 0.2: the limit is 14 % off although the last step is 2 %; ten times smaller as well
     for size in (1.0, 0.1, 0.01):
         found = judge(1.0 - size * SPACINGS**0.2, SPACINGS)
@@ -78,7 +77,7 @@ def test_slow_growth_is_never_called_converged() -> None:
         assert np.isnan(found.extrapolated)
 
 
-def test_a_coarse_grid_out_of_line_costs_the_safety_factor() -> None:
+def test_a_coarse_grid_out_of_line_costs_the_safety_factor():
     smooth = 5 + 40 * SPACINGS**2
     for coarsest in (4.9, np.nan):
         bent = np.array([*smooth[:4], coarsest])
@@ -88,13 +87,13 @@ def test_a_coarse_grid_out_of_line_costs_the_safety_factor() -> None:
         assert found.extrapolated == pytest.approx(5.0)
 
 
-def test_a_value_of_zero_on_the_finest_grid() -> None:
+def test_a_value_of_zero_on_the_finest_grid():
     found = judge(np.array([0.0, 1e-5, 3e-5, 7e-5, 15e-5]), SPACINGS)
     assert found.verdict is AxisVerdict.NOT_YET_CONVERGED
     assert found.gci == np.inf
 
 
-def test_analysis_of_a_grid(grid_runs: Build, verdicts_of: Callable[..., Any]) -> None:
+def test_analysis_of_a_grid(grid_runs, verdicts_of):
     runs = grid_runs(
         {"nodes": [201, 51, 401, 101], "velocity": [1.0, 15.0]},
         peak_force=lambda nodes, velocity: 1e4 * velocity * (1 + 8 * _h(nodes) ** 2),
@@ -115,14 +114,14 @@ def test_analysis_of_a_grid(grid_runs: Build, verdicts_of: Callable[..., Any]) -
     assert found["response_units"].values.tolist() == ["N", "1"]
 
 
-def test_ratio_comes_from_the_intervals(grid_runs: Build) -> None:
+def test_ratio_comes_from_the_intervals(grid_runs):
     """With N for N - 1 the order of these few nodes would be off by a tenth."""
     runs = grid_runs({"nodes": [5, 9, 21]}, peak_force=lambda nodes: 7 + _h(nodes) ** 2)
     found = axes.NODES.analysis(runs)
     assert found["nodes_observed_order"].item() == pytest.approx(2.0, abs=1e-9)
 
 
-def test_a_failed_run_gives_no_number(grid_runs: Build, verdicts_of: Callable[..., Any]) -> None:
+def test_a_failed_run_gives_no_number(grid_runs, verdicts_of):
     runs = grid_runs(
         {"velocity": [1.0, 5.0], "nodes": [51, 101, 201]},
         peak_force=lambda velocity, nodes: velocity + 0.1 * _h(nodes) ** 2,
@@ -137,16 +136,14 @@ def test_a_failed_run_gives_no_number(grid_runs: Build, verdicts_of: Callable[..
         assert np.isnan(gone[name])
 
 
-def test_a_number_from_a_diverged_run_is_not_used(
-    grid_runs: Build, verdicts_of: Callable[..., Any]
-) -> None:
+def test_a_number_from_a_diverged_run_is_not_used(grid_runs, verdicts_of):
     runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: 5 + _h(nodes) ** 2)
     runs["status"][0] = 1
     found = axes.NODES.analysis(runs)
     assert verdicts_of(found["nodes_verdict"]) == ["undetermined"]
 
 
-def test_says_that_time_step_and_spacing_go_together(grid_runs: Build) -> None:
+def test_says_that_time_step_and_spacing_go_together(grid_runs):
     runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: 5 + _h(nodes) ** 2)
     found = axes.NODES.analysis(runs)
     for name in ("nodes_observed_order", "nodes_gci", "nodes_verdict", "nodes_summary"):
@@ -154,12 +151,12 @@ def test_says_that_time_step_and_spacing_go_together(grid_runs: Build) -> None:
 
 
 @pytest.mark.parametrize(("nodes", "applies"), [([51, 101], False), ([51, 101, 201], True)])
-def test_needs_three_grids(grid_runs: Build, nodes: list[int], applies: bool) -> None:
+def test_needs_three_grids(grid_runs, nodes, applies):
     runs = grid_runs({"nodes": nodes}, peak_force=lambda nodes: nodes)
     assert axes.NODES.applies(runs) is applies
 
 
-def test_refuses_repeated_nodes(grid_runs: Build) -> None:
+def test_refuses_repeated_nodes(grid_runs):
     runs = grid_runs({"nodes": [51, 101, 101]}, peak_force=lambda nodes: nodes)
     with pytest.raises(ValueError, match="must rise"):
         axes.NODES.analysis(runs)
@@ -169,7 +166,7 @@ AXES = {"nodes": [51, 101, 201], "courant": [0.8, 0.1, 0.2, 0.4]}
 
 
 @pytest.fixture
-def both(grid_runs: Build) -> xr.Dataset:
+def both(grid_runs):
     """An error of first order in space and of second in the time step, courant times h^2."""
     return grid_runs(
         AXES,
@@ -177,7 +174,7 @@ def both(grid_runs: Build) -> xr.Dataset:
     )
 
 
-def test_time_is_judged_at_each_number_of_nodes(both: xr.Dataset) -> None:
+def test_time_is_judged_at_each_number_of_nodes(both):
     found = axes.TIME_STEP.analysis(both).sel(response="peak_force")
     assert found["time_step_gci"].dims == ("nodes",)
     np.testing.assert_allclose(found["time_step_observed_order"], 2.0, rtol=1e-6)
@@ -190,7 +187,7 @@ def test_time_is_judged_at_each_number_of_nodes(both: xr.Dataset) -> None:
     assert "not that of the beam" in found["time_step_verdict"].attrs["comment"]
 
 
-def test_space_is_judged_at_each_courant(both: xr.Dataset) -> None:
+def test_space_is_judged_at_each_courant(both):
     found = axes.NODES.analysis(both).sel(response="peak_force")
     assert found["nodes_gci"].dims == ("courant",)
     fine, coarse = (found["nodes_observed_order"].sel(courant=at).item() for at in (0.1, 0.8))
@@ -211,7 +208,7 @@ def test_space_is_judged_at_each_courant(both: xr.Dataset) -> None:
         ),
     ],
 )
-def test_says_what_the_time_step_follows(grid_runs: Build, coords: Any, said: str) -> None:
+def test_says_what_the_time_step_follows(grid_runs, coords, said):
     runs = grid_runs(
         {"nodes": [51, 101, 201], "velocity": [1.0, 2.0]},
         peak_force=lambda nodes, velocity: velocity + _h(nodes) ** 2,
@@ -219,20 +216,18 @@ def test_says_what_the_time_step_follows(grid_runs: Build, coords: Any, said: st
     assert said in axes.coupling(runs.assign_coords(coords))
 
 
-def test_a_model_without_waves_has_a_time_step_of_its_own(grid_runs: Build) -> None:
+def test_a_model_without_waves_has_a_time_step_of_its_own(grid_runs):
     runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: nodes)
     assert axes.coupling(runs.assign_coords(beam_model="spring_mass")) == ""
 
 
 @pytest.mark.parametrize(("values", "applies"), [([0.4, 0.8], False), ([0.2, 0.4, 0.8], True)])
-def test_needs_three_time_steps(grid_runs: Build, values: list[float], applies: bool) -> None:
+def test_needs_three_time_steps(grid_runs, values, applies):
     runs = grid_runs({"courant": values}, peak_force=lambda courant: courant)
     assert axes.TIME_STEP.applies(runs) is applies
 
 
-def test_without_limit_no_number_is_given(
-    grid_runs: Build, verdicts_of: Callable[..., Any]
-) -> None:
+def test_without_limit_no_number_is_given(grid_runs, verdicts_of):
     """A strain that looks converged has no limit all the same where the beam does not harden."""
     hardening = ("beam_isotropic_hardening_modulus", "beam_kinematic_hardening_modulus")
     runs = grid_runs(
@@ -254,7 +249,7 @@ def test_without_limit_no_number_is_given(
     assert flag not in np.ravel(verdicts_of(force["nodes_behaviour"]))
 
 
-def test_kinematic_hardening_brings_a_limit_back(grid_runs: Build) -> None:
+def test_kinematic_hardening_brings_a_limit_back(grid_runs):
     runs = grid_runs(
         {"nodes": [51, 101, 201]}, peak_plastic_strain=lambda nodes: 1 + 8 * _h(nodes) ** 2
     ).assign_coords(beam_isotropic_hardening_modulus=0.0, beam_kinematic_hardening_modulus=1e9)

@@ -1,7 +1,5 @@
 """The uncertainty of each grid holds the limit, and is infinite where nothing can be said."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -18,9 +16,7 @@ H = 2.0 ** np.arange(5)
 @pytest.mark.parametrize("order", [0.6, 1.0, 1.5, 2.0, 2.8])
 @pytest.mark.parametrize("grids", [2, 3, 4, 5])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_every_grid_of_a_converging_sequence_holds_the_limit(
-    order: float, grids: int, sign: float
-) -> None:
+def test_every_grid_of_a_converging_sequence_holds_the_limit(order, grids, sign):
     h = H[:grids]
     values = 5.0 + sign * 1e-3 * h**order
     amounts, _ = numerical_uncertainty(values, h)
@@ -52,19 +48,19 @@ def test_every_grid_of_a_converging_sequence_holds_the_limit(
         ([1.0, np.nan, np.nan], How.NOTHING),
     ],
 )
-def test_what_it_rests_on(values: Any, how: How) -> None:
+def test_what_it_rests_on(values, how):
     amounts, found = numerical_uncertainty(values, H[: len(values)])
     assert found is how
     assert np.isinf(amounts).all() == (how is How.NOTHING)
 
 
-def test_two_and_three_grids_by_hand() -> None:
+def test_two_and_three_grids_by_hand():
     np.testing.assert_allclose(numerical_uncertainty([1.0, 1.1], [1.0, 3.0])[0], [0.15, 0.25])
     three, _ = numerical_uncertainty([1.00, 1.02, 0.94], [1.0, 2.0, 4.0])
     np.testing.assert_allclose(three, [0.24, 0.26, 0.30])
 
 
-def test_nasa_table() -> None:
+def test_nasa_table():
     """GCI of the finest 0.1031 %; order 1.79 on three grids, which may be that of noise."""
     values = [0.97050, 0.96854, 0.96178]
     found = judge(np.array(values), H[:3])
@@ -74,21 +70,21 @@ def test_nasa_table() -> None:
     assert amounts[1] == pytest.approx(amounts[0] + 0.00196)
 
 
-def test_three_grids_that_agree_leave_nothing_to_the_fit() -> None:
+def test_three_grids_that_agree_leave_nothing_to_the_fit():
     """A count that differs on the coarsest grid alone: its verdict is sound, so is its number."""
     found = judge(np.array([4.0, 4.0, 4.0, 3.0, 3.0]), H)
     assert found.verdict is AxisVerdict.AT_ROUND_OFF
     assert found.uncertainty <= 1e-9
 
 
-def test_a_slow_drift_is_bounded_by_its_own_order() -> None:
+def test_a_slow_drift_is_bounded_by_its_own_order():
     values = 1.0 - 0.1 * H**0.3
     amounts, how = numerical_uncertainty(values, H)
     assert amounts[0] == pytest.approx(3 * 0.1)
     assert not how.sound
 
 
-def test_a_missing_grid_is_left_out() -> None:
+def test_a_missing_grid_is_left_out():
     values = 5.0 + 1e-3 * H**2
     values[2] = np.nan
     amounts, _ = numerical_uncertainty(values, H)
@@ -96,7 +92,7 @@ def test_a_missing_grid_is_left_out() -> None:
     assert amounts[0] >= 1e-3
 
 
-def test_scatter_that_passes_for_an_order_is_covered() -> None:
+def test_scatter_that_passes_for_an_order_is_covered():
     """Noise of a fifth of the finest error: the index alone holds 4 limits of 5."""
     random, held = np.random.default_rng(5), 0
     for _ in range(200):
@@ -121,7 +117,7 @@ FAMILIES = {
 @pytest.mark.parametrize(
     ("ratio", "grids"), [(1.1, 4), (1.2, 3), (1.2, 6), (2**0.5, 3), (2**0.5, 5), (2.0, 3), (2.0, 4)]
 )
-def test_what_is_sound_holds_the_limit(family: str, ratio: float, grids: int) -> None:
+def test_what_is_sound_holds_the_limit(family, ratio, grids):
     """The errors are 0.01 to 3 %; under noise 92 % or more hold, less two standard errors."""
     random, h, held = np.random.default_rng(3), ratio ** np.arange(grids), []
     for _ in range(400 if "noise" in family else 60):
@@ -144,9 +140,7 @@ def test_what_is_sound_holds_the_limit(family: str, ratio: float, grids: int) ->
         (2.0, 3, AxisVerdict.CONVERGED_SECOND_ORDER),
     ],
 )
-def test_grids_close_to_each_other_show_no_order(
-    ratio: float, grids: int, verdict: AxisVerdict
-) -> None:
+def test_grids_close_to_each_other_show_no_order(ratio, grids, verdict):
     """A second order of 0.7 % at the finest; and an error that turns on the same grids."""
     h = ratio ** np.arange(grids)
     size = 0.02 if verdict is AxisVerdict.NOT_YET_CONVERGED else 0.007
@@ -157,6 +151,6 @@ def test_grids_close_to_each_other_show_no_order(
 
 
 @pytest.mark.parametrize("spacings", [[2.0, 1.0, 4.0], [0.0, 1.0, 2.0], [1.0, 1.0, 2.0]])
-def test_refuses_spacings_that_do_not_rise(spacings: list[float]) -> None:
+def test_refuses_spacings_that_do_not_rise(spacings):
     with pytest.raises(ValueError, match="must rise"):
         numerical_uncertainty([1.0, 2.0, 3.0], spacings)

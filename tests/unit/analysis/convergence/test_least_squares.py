@@ -11,7 +11,7 @@ H = 2.0 ** np.arange(5)
 
 
 @pytest.mark.parametrize("order", [0.6, 1.0, 1.5, 1.9])
-def test_exact_data_give_their_order_and_limit(order: float) -> None:
+def test_exact_data_give_their_order_and_limit(order):
     values = 3.0 - 0.1 * H**order
     found = fit(values, 1e-3 * H)
     assert found.expansion is Expansion.FREE
@@ -21,7 +21,7 @@ def test_exact_data_give_their_order_and_limit(order: float) -> None:
     np.testing.assert_allclose(uncertainty(found, values), 1.25 * 0.1 * H**order, rtol=1e-3)
 
 
-def test_too_high_an_order_is_replaced_by_the_second() -> None:
+def test_too_high_an_order_is_replaced_by_the_second():
     values = 1.0 + 1e-3 * H**3
     found = fit(values, H)
     assert (found.expansion, found.order) == (Expansion.SECOND, 2.0)
@@ -30,7 +30,7 @@ def test_too_high_an_order_is_replaced_by_the_second() -> None:
     assert uncertainty(found, values)[0] > 3 * found.errors[0]
 
 
-def test_both_orders_where_none_is_seen() -> None:
+def test_both_orders_where_none_is_seen():
     """First and second order that nearly cancel: the minimum is at h = 3."""
     values = 1.0 - 6e-3 * H + 1e-3 * H**2
     found = fit(values, H)
@@ -40,7 +40,7 @@ def test_both_orders_where_none_is_seen() -> None:
     assert (slow.expansion, slow.order) == (Expansion.BOTH, 1.0)
 
 
-def test_the_expansion_of_both_is_a_weighted_parabola() -> None:
+def test_the_expansion_of_both_is_a_weighted_parabola():
     values = 1.0 + np.log(H)
     found = fit(values, H)
     weights = {name: w / w.sum() for name, w in (("even", np.ones(5)), ("fine", 1 / H))}
@@ -51,7 +51,7 @@ def test_the_expansion_of_both_is_a_weighted_parabola() -> None:
     assert found.deviation == pytest.approx(min(residuals.values()), rel=1e-9)
 
 
-def test_a_fitted_order_costs_a_degree_of_freedom() -> None:
+def test_a_fitted_order_costs_a_degree_of_freedom():
     """Against scipy's Levenberg-Marquardt on the same curve, with and without weights 1/h."""
     values = 3.0 - 0.1 * H**1.5 + 1e-2 * np.array([1, -2, 1, 2, -1])
     found = fit(values, H)
@@ -73,7 +73,7 @@ def test_a_fitted_order_costs_a_degree_of_freedom() -> None:
     )
 
 
-def test_a_good_fit_of_an_assumed_order_has_the_factor_3() -> None:
+def test_a_good_fit_of_an_assumed_order_has_the_factor_3():
     values = 1.0 + 1e-3 * H**2.4
     found = fit(values, H)
     assert found.expansion is Expansion.SECOND
@@ -82,7 +82,7 @@ def test_a_good_fit_of_an_assumed_order_has_the_factor_3() -> None:
     np.testing.assert_allclose(uncertainty(found, values), expected)
 
 
-def test_a_poor_fit_is_widened_by_its_deviation() -> None:
+def test_a_poor_fit_is_widened_by_its_deviation():
     values = np.array([1.0, 1.2, 0.9, 1.1, 1.0])
     found = fit(values, H)
     data_range = 0.3 / 4
@@ -94,7 +94,7 @@ def test_a_poor_fit_is_widened_by_its_deviation() -> None:
 
 @pytest.mark.parametrize("scatter", [0.1, 0.3, 1.0])
 @pytest.mark.parametrize("grids", [5, 7])
-def test_the_interval_holds_the_limit_in_19_of_20_draws(scatter: float, grids: int) -> None:
+def test_the_interval_holds_the_limit_in_19_of_20_draws(scatter, grids):
     """Second order, as the solver's, under noise of up to the finest grid's error."""
     random, h = np.random.default_rng(11), 2.0 ** np.arange(grids)
     held, wide = 0, []
@@ -107,12 +107,12 @@ def test_the_interval_holds_the_limit_in_19_of_20_draws(scatter: float, grids: i
     assert np.median(wide) < 4.0  # and is no empty promise
 
 
-def test_the_order_of_the_grids_does_not_matter() -> None:
+def test_the_order_of_the_grids_does_not_matter():
     values = 1.0 + 1e-3 * H**1.5 + 1e-4 * np.array([1, -2, 1, 3, -1])
     one, other = fit(values, H), fit(values[::-1], H[::-1])
     assert other.extrapolated == pytest.approx(one.extrapolated, rel=1e-7)
 
 
-def test_refuses_fewer_than_four_grids() -> None:
+def test_refuses_fewer_than_four_grids():
     with pytest.raises(ValueError, match="four grids, not 3"):
         fit([1.0, 2.0, 3.0], [1.0, 2.0, 4.0])

@@ -1,7 +1,6 @@
 """Errors against the most points, the points needed, and the verdicts on them."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -34,9 +33,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("values", "needed", "verdict"), CASES)
-def test_every_verdict(
-    grid_runs: Build, verdicts_of: Callable[..., Any], values: Any, needed: float, verdict: str
-) -> None:
+def test_every_verdict(grid_runs, verdicts_of, values, needed, verdict):
     lookup = dict(zip(POINTS, values, strict=True))
     runs = grid_runs(
         {"points": POINTS}, peak_force=lambda points: [lookup[p] for p in points.values]
@@ -47,9 +44,7 @@ def test_every_verdict(
     assert np.isfinite(values[-1]) == bool((found["points_error"][0, -1] == 0).item())
 
 
-def test_errors_are_relative_to_the_most_points(
-    grid_runs: Build, verdicts_of: Callable[..., Any]
-) -> None:
+def test_errors_are_relative_to_the_most_points(grid_runs, verdicts_of):
     runs = grid_runs(
         {"rule": ["lobatto", "layers"], "points": [9, 3, 33, 5], "velocity": [1.0, 2.0]},
         maximum_deflection=lambda rule, points, velocity: (
@@ -71,14 +66,14 @@ def test_errors_are_relative_to_the_most_points(
     assert verdicts_of(found["points_verdict"]) == [[["at_round_off"] * 2, ["converged"] * 2]]
 
 
-def test_a_reference_of_zero_makes_other_values_infinitely_wrong(grid_runs: Build) -> None:
+def test_a_reference_of_zero_makes_other_values_infinitely_wrong(grid_runs):
     runs = grid_runs({"points": [2, 3]}, peak_plastic_strain=lambda points: 1e-3 * (points < 3))
     found = in_points.analysis(runs)
     assert found["points_error"].values.tolist() == [[np.inf, 0.0]]
 
 
 @pytest.mark.parametrize(("points", "applies"), [([3], False), ([3, 5], True)])
-def test_needs_two_values(grid_runs: Build, points: list[int], applies: bool) -> None:
+def test_needs_two_values(grid_runs, points, applies):
     runs = grid_runs({"points": points}, peak_force=lambda points: points)
     assert ("points_error" in analyse(runs)) is applies
 
@@ -93,11 +88,11 @@ def test_needs_two_values(grid_runs: Build, points: list[int], applies: bool) ->
         ([1.0], [np.inf]),
     ],
 )
-def test_uncertainty_of_each_number_of_points(values: Any, expected: Any) -> None:
+def test_uncertainty_of_each_number_of_points(values, expected):
     np.testing.assert_allclose(in_points.numerical_uncertainty(values), expected)
 
 
-def test_uncertainty_with_the_most_points_is_relative(grid_runs: Build) -> None:
+def test_uncertainty_with_the_most_points_is_relative(grid_runs):
     runs = grid_runs({"points": [5, 3]}, peak_force=lambda points: 2.0 + 0.1 * (points < 5))
     found = in_points.analysis(runs)
     assert found["points_uncertainty"].item() == pytest.approx(0.15)

@@ -20,12 +20,12 @@ CELIK = [18000, 8000, 4500]
 CELIK_COARSER = [18000, 4500, 980]
 
 
-def _spacings(cells: list[int]) -> list[float]:
+def _spacings(cells):
     """Return the spacings from numbers of cells in 2-D."""
     return [count**-0.5 for count in cells]
 
 
-def test_celik_table() -> None:
+def test_celik_table():
     found = estimate([6.063, 5.972, 5.863], _spacings(CELIK))
     assert found.behaviour is Behaviour.MONOTONE
     assert found.order == pytest.approx(1.534, abs=5e-4)
@@ -33,14 +33,14 @@ def test_celik_table() -> None:
     assert found.gci(SAFETY_CREDIBLE) == pytest.approx(0.02175, abs=5e-6)
 
 
-def test_celik_table_of_low_order() -> None:
+def test_celik_table_of_low_order():
     found = estimate([10.7880, 10.7250, 10.6050], _spacings(CELIK_COARSER))
     assert found.order == pytest.approx(0.75, abs=5e-3)
     assert found.extrapolated == pytest.approx(10.8801, abs=5e-4)
     assert found.gci(SAFETY_CREDIBLE) == pytest.approx(0.011, abs=5e-4)
 
 
-def test_celik_table_with_oscillation() -> None:
+def test_celik_table_with_oscillation():
     found = estimate([6.0042, 5.9624, 6.0909], _spacings(CELIK_COARSER))
     assert found.behaviour is Behaviour.OSCILLATORY
     assert found.order == pytest.approx(1.51, abs=5e-3)
@@ -48,7 +48,7 @@ def test_celik_table_with_oscillation() -> None:
     assert math.isnan(found.extrapolated)
 
 
-def test_nasa_table() -> None:
+def test_nasa_table():
     found = estimate([0.97050, 0.96854, 0.96178], [1.0, 2.0, 4.0])
     assert found.order == pytest.approx(1.78618, abs=2e-5)
     assert found.extrapolated == pytest.approx(0.97130, abs=5e-6)
@@ -64,13 +64,13 @@ def test_nasa_table() -> None:
         ([0.97050, 0.96854, 0.96178], [1.0, 2.0, 4.0]),
     ],
 )
-def test_asymptotic_ratio_of_the_tables(values: list[float], spacings: list[float]) -> None:
+def test_asymptotic_ratio_of_the_tables(values, spacings):
     """Celik's equation for p makes it f1/f2 on any ratios."""
     found = estimate(values, spacings)
     assert found.asymptotic_ratio == pytest.approx(values[0] / values[1], rel=1e-9)
 
 
-def test_too_high_an_order_shows_in_the_asymptotic_ratio() -> None:
+def test_too_high_an_order_shows_in_the_asymptotic_ratio():
     found = estimate([1 + 1e-6 * h**2.9 for h in (1.0, 2.0, 4.0)], [1.0, 2.0, 4.0])
     assert found.asymptotic_ratio == pytest.approx(2**0.9, rel=1e-4)
     assert math.isnan(estimate([1.0, 1.2, 0.9], [1.0, 2.0, 4.0]).asymptotic_ratio)
@@ -95,7 +95,7 @@ def test_too_high_an_order_shows_in_the_asymptotic_ratio() -> None:
         ([1.0, 1.1, math.inf], Behaviour.UNDETERMINED, math.nan),
     ],
 )
-def test_every_class(values: list[float], behaviour: Behaviour, order: float) -> None:
+def test_every_class(values, behaviour, order):
     found = estimate(values, [1.0, 2.0, 4.0])
     assert found.behaviour is behaviour
     assert found.order == pytest.approx(order, abs=1e-9, nan_ok=True)
@@ -105,7 +105,7 @@ def test_every_class(values: list[float], behaviour: Behaviour, order: float) ->
     assert math.isfinite(found.gci(SAFETY_DOUBTFUL)) == converging
 
 
-def test_logarithmic_growth_on_unequal_ratios_is_of_order_zero() -> None:
+def test_logarithmic_growth_on_unequal_ratios_is_of_order_zero():
     spacings = [1.0, 1.5, 6.0]
     found = estimate([-math.log(h) for h in spacings], spacings)
     assert found.order == pytest.approx(0.0, abs=1e-9)
@@ -121,13 +121,13 @@ def test_logarithmic_growth_on_unequal_ratios_is_of_order_zero() -> None:
         (3.1, False, False),
     ],
 )
-def test_credible_and_asymptotic_orders(order: float, credible: bool, asymptotic: bool) -> None:
+def test_credible_and_asymptotic_orders(order, credible, asymptotic):
     spacings = [1.0, 2.0, 4.0]
     found = estimate([100.0 + h**order for h in spacings], spacings)
     assert (found.credible, found.asymptotic) == (credible, asymptotic)
 
 
-def test_an_order_above_the_formal_one_does_not_narrow_the_gci() -> None:
+def test_an_order_above_the_formal_one_does_not_narrow_the_gci():
     found = estimate([1 + h**3 for h in (0.1, 0.2, 0.4)], [0.1, 0.2, 0.4])
     assert found.order == pytest.approx(3.0)
     assert found.gci(1.25) == pytest.approx(1.25 * 0.007 / 1.001 / 3.0)
@@ -135,7 +135,7 @@ def test_an_order_above_the_formal_one_does_not_narrow_the_gci() -> None:
     assert safety([estimate([1 + h**2 for h in (0.1, 0.2, 0.4)], [0.1, 0.2, 0.4])]) == 1.25
 
 
-def test_gci_relative_to_zero_is_infinite() -> None:
+def test_gci_relative_to_zero_is_infinite():
     assert grid_convergence_index(0.0, 1.0, 2.0, 2.0) == math.inf
 
 
@@ -145,9 +145,7 @@ sizes = st.one_of(st.floats(0.1, 10.0), st.floats(-10.0, -0.1))
 
 @given(st.floats(-10, 10), sizes, st.floats(0.3, 4.0), ratios, ratios)
 @example(1.0, 1.0, 3.0, 1.1, 5.0)  # where Celik's iteration runs away
-def test_recovers_order_and_limit(
-    limit: float, size: float, order: float, r21: float, r32: float
-) -> None:
+def test_recovers_order_and_limit(limit, size, order, r21, r32):
     spacings = [0.1, 0.1 * r21, 0.1 * r21 * r32]
     found = estimate([limit + size * h**order for h in spacings], spacings)
     smallest = abs(size) * 0.1**order * (r21**order - 1)
@@ -160,7 +158,7 @@ def test_recovers_order_and_limit(
 @given(
     st.floats(1e-8, 1e8), st.sampled_from([1.0, -1.0]), st.floats(1.01, 100), st.floats(1.01, 100)
 )
-def test_order_solves_celiks_equation(size: float, sign: float, r21: float, r32: float) -> None:
+def test_order_solves_celiks_equation(size, sign, r21, r32):
     order = observed_order(sign * size, r21, r32)
     if abs(order) > 1e-6 and abs(order) * math.log(max(r21, r32)) < 500:
         q = math.log((r21**order - sign) / (r32**order - sign))
@@ -168,11 +166,11 @@ def test_order_solves_celiks_equation(size: float, sign: float, r21: float, r32:
 
 
 @pytest.mark.parametrize("spacings", [[1.0, 1.0, 2.0], [4.0, 2.0, 1.0], [0.0, 1.0, 2.0]])
-def test_refuses_spacings_that_do_not_rise(spacings: list[float]) -> None:
+def test_refuses_spacings_that_do_not_rise(spacings):
     with pytest.raises(ValueError, match="must rise"):
         estimate([1.0, 2.0, 3.0], spacings)
 
 
-def test_refuses_other_than_three_grids() -> None:
+def test_refuses_other_than_three_grids():
     with pytest.raises(ValueError, match="three grids, not 4"):
         estimate([1.0, 2.0, 3.0, 4.0], [1.0, 2.0, 3.0, 4.0])

@@ -26,19 +26,19 @@ class Known:
     bounds: tuple[float, float]
 
     @property
-    def size(self) -> int:
+    def size(self):
         return len(self.first)
 
-    def of_unit(self, unit: Any) -> Any:
+    def of_unit(self, unit):
         low, high = self.bounds
         return self.function(low + (high - low) * unit)
 
 
 @pytest.fixture
-def ishigami() -> Known:
+def ishigami():
     """For a = 7, b = 0.1 (Ishigami and Homma 1990)."""
 
-    def function(x: Any) -> Any:
+    def function(x):
         return np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
 
     v1 = 0.5 * (1 + 0.1 * np.pi**4 / 5) ** 2
@@ -51,13 +51,13 @@ def ishigami() -> Known:
 
 
 @pytest.fixture
-def sobol_g() -> Known:
+def sobol_g():
     """Five parameters, from the most to the least important (Saltelli and Sobol' 1995)."""
     parts = 1 / (3 * (1 + A) ** 2)
     whole = np.prod(1 + parts) - 1
     total = parts * np.prod(1 + parts) / (1 + parts)
 
-    def function(x: Any) -> Any:
+    def function(x):
         return np.prod((np.abs(4 * x - 2) + A) / (1 + A), axis=1)
 
     pairs = np.outer(parts, parts) / whole
@@ -65,12 +65,10 @@ def sobol_g() -> Known:
 
 
 @pytest.fixture
-def drawn() -> Callable[..., xr.Dataset]:
+def drawn():
     """Runs of any method from inputs (runs, parameters) and outputs by response."""
 
-    def build(
-        method: str, inputs: Any, outputs: Mapping[str, Any] | Any, **attrs: Any
-    ) -> xr.Dataset:
+    def build(method, inputs, outputs, **attrs):
         named = outputs if isinstance(outputs, Mapping) else {RESPONSES[0]: outputs}
         run = {"run": np.arange(len(inputs))}
         names: Sequence[str] = [f"x{i}" for i in range(inputs.shape[1])]

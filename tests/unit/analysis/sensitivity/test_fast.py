@@ -1,7 +1,6 @@
 """Extended FAST against analytic indices, SALib's own numbers, and its floor."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -15,19 +14,19 @@ Build = Callable[..., xr.Dataset]
 SETTINGS = {"curves": 16, "frequency": 33, "harmonics": 4}
 
 
-def _unit(seed: int, size: int = 3, samples: int = 1188) -> Any:
+def _unit(seed, size=3, samples=1188):
     parameters = {f"x{at + 1}": il.Uniform(0, 1) for at in range(size)}
     sampling = il.Fast(samples=samples, seed=seed, parameters=parameters)
     runs = il.Study(title="-", function="g", sampling=sampling).design()
     return np.column_stack([runs[name] for name in parameters])
 
 
-def _runs(drawn: Build, function: Callable[[Any], Any], seed: int = 0, **attrs: Any) -> xr.Dataset:
+def _runs(drawn, function, seed=0, **attrs):
     unit = _unit(seed)
     return drawn("fast", unit, function(unit), **(SETTINGS | attrs))
 
 
-def _g(unit: Any) -> Any:
+def _g(unit):
     """Sobol's G function of three parameters, the last of which hardly matters."""
     a = np.array([0.0, 1.0, 99.0])
     return np.prod((np.abs(4 * unit - 2) + a) / (1 + a), axis=1)
@@ -43,8 +42,8 @@ EXACT = {
 
 @pytest.mark.parametrize("name", ["ishigami", "g", "linear"])
 def test_intervals_hold_the_exact_indices_at_the_smallest_sample(
-    drawn: Build, verdicts_of: Callable[..., Any], name: str, ishigami: Any
-) -> None:
+    drawn, verdicts_of, name, ishigami
+):
     """The third parameter of each is inert or nearly so; 200 seeds: 90 to 100 % of each index."""
     known = {"ishigami": (ishigami.first, ishigami.total)} | EXACT
     function = {"ishigami": ishigami.of_unit, "g": _g, "linear": lambda x: x @ [2.0, 1.0, 0.0]}
@@ -61,7 +60,7 @@ def test_intervals_hold_the_exact_indices_at_the_smallest_sample(
     assert np.mean(held, axis=0).min() >= 0.8
 
 
-def test_indices_are_those_of_salib_over_all_curves(drawn: Build, ishigami: Any) -> None:
+def test_indices_are_those_of_salib_over_all_curves(drawn, ishigami):
     runs = _runs(drawn, ishigami.of_unit)
     indices = sensitivity.analysis(runs).isel(response=0)
     curves = runs["peak_force"].values.reshape(4, 4, -1)
@@ -74,16 +73,14 @@ def test_indices_are_those_of_salib_over_all_curves(drawn: Build, ishigami: Any)
         assert indices[order].attrs["estimator"].startswith("extended FAST")
 
 
-def test_harmonics_beyond_the_last_are_not_lost(drawn: Build) -> None:
+def test_harmonics_beyond_the_last_are_not_lost(drawn):
     """A jump has a tenth of its variance beyond the fourth harmonic."""
     indices = sensitivity.analysis(_runs(drawn, lambda x: np.sign(x[:, 0] - 0.4) + 3 * x[:, 1]))
     exact = 0.96 / (0.96 + 9 / 12)
     assert abs(indices["first_order"][0, 0] - exact) < 0.02
 
 
-def test_curves_that_do_not_vary_have_no_indices(
-    drawn: Build, ishigami: Any, verdicts_of: Callable[..., Any]
-) -> None:
+def test_curves_that_do_not_vary_have_no_indices(drawn, ishigami, verdicts_of):
     runs = _runs(drawn, ishigami.of_unit)
     runs["peak_force"][1188:2376] = 2.0
     found = sensitivity.analysis(runs)
@@ -91,7 +88,7 @@ def test_curves_that_do_not_vary_have_no_indices(
     assert np.isnan(found["total_order"]).all()
 
 
-def test_refuses_what_is_not_its_sample(drawn: Build, ishigami: Any) -> None:
+def test_refuses_what_is_not_its_sample(drawn, ishigami):
     runs = _runs(drawn, ishigami.of_unit)
     with pytest.raises(ValueError, match="has 4751 runs, but 16 curves of 297 points make 4752"):
         sensitivity.analysis(runs.isel(run=slice(None, -1)))

@@ -1,7 +1,6 @@
 """Delta, PAWN and regression of a linear Gaussian model, whose answers are known."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,26 +21,26 @@ METHODS = ("delta", "pawn", "regression")
 
 
 @pytest.fixture(scope="module")
-def normal() -> Any:
+def normal():
     """A Latin hypercube of three standard normal parameters."""
     return norm.ppf(qmc.LatinHypercube(3, rng=np.random.default_rng(2)).random(500))
 
 
-def exact_delta(share: float) -> float:
+def exact_delta(share):
     """Return half the mean distance of the densities with and without x, of a Gaussian model.
 
     Given x = z, the response is N(z sqrt(share), 1 - share) against N(0, 1).
     """
     y, spread = np.linspace(-9, 9, 4001), np.sqrt(1 - share)
 
-    def distance(z: float) -> float:
+    def distance(z):
         apart = abs(norm.pdf(y) - norm.pdf(y, z * np.sqrt(share), spread))
         return float(0.5 * np.trapezoid(apart, y) * norm.pdf(z))
 
     return float(quad(distance, -6, 6, limit=200, epsabs=1e-4)[0])
 
 
-def test_delta_of_a_linear_model(drawn: Build, normal: Any) -> None:
+def test_delta_of_a_linear_model(drawn, normal):
     found = sensitivity.analysis(drawn("delta", normal, normal @ WEIGHTS)).isel(response=0)
     exact = [exact_delta(0.8), exact_delta(0.2), 0.0]
     assert (abs(found["delta"] - exact) <= found["delta_interval"]).all()
@@ -52,12 +51,12 @@ def test_delta_of_a_linear_model(drawn: Build, normal: Any) -> None:
     assert abs(found["dummy_delta_first_order"]) < found["dummy_delta_first_order_interval"]
 
 
-def _ishigami(x: Any) -> Any:
+def _ishigami(x):
     return np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
 
 
 @pytest.mark.parametrize("runs", [200, 1000])
-def test_first_orders_of_few_runs_are_not_too_small(runs: int) -> None:
+def test_first_orders_of_few_runs_are_not_too_small(runs):
     """The indices of Ishigami's function and an inert parameter are 0.314, 0.442, 0 and 0."""
     exact, held, values = [0.3139, 0.4424, 0.0, 0.0], [], []
     for seed in range(200):
@@ -69,7 +68,7 @@ def test_first_orders_of_few_runs_are_not_too_small(runs: int) -> None:
     assert np.mean(held, axis=0).min() >= {200: 0.83, 1000: 0.9}[runs]
 
 
-def test_delta_of_an_inert_parameter_is_within_its_interval(drawn: Build) -> None:
+def test_delta_of_an_inert_parameter_is_within_its_interval(drawn):
     """It is about 0.06 by noise alone, however many the runs."""
     held = []
     for seed in range(6):
@@ -81,7 +80,7 @@ def test_delta_of_an_inert_parameter_is_within_its_interval(drawn: Build) -> Non
 
 
 @pytest.mark.parametrize("runs", [500, 2000])
-def test_intervals_of_delta_hold_the_exact_ones_of_ishigami(drawn: Build, runs: int) -> None:
+def test_intervals_of_delta_hold_the_exact_ones_of_ishigami(drawn, runs):
     """By quadrature; its densities have sharp modes, which smoothing brings closer together."""
     x = np.random.default_rng(runs).uniform(-np.pi, np.pi, (runs, 3))
     found = sensitivity.analysis(drawn("delta", x, _ishigami(x), resamples=30)).isel(response=0)
@@ -91,7 +90,7 @@ def test_intervals_of_delta_hold_the_exact_ones_of_ishigami(drawn: Build, runs: 
     assert found["delta"].values.argmax() == 1
 
 
-def test_delta_is_that_of_salib_at_its_width(normal: Any) -> None:
+def test_delta_is_that_of_salib_at_its_width(normal):
     """On runs drawn more than once, with classes of unequal size."""
     rows = np.random.default_rng(1).integers(500, size=499)
     inputs, outputs = normal[rows], normal[rows] @ WEIGHTS
@@ -103,9 +102,7 @@ def test_delta_is_that_of_salib_at_its_width(normal: Any) -> None:
         np.testing.assert_allclose(delta, theirs, rtol=1e-10)
 
 
-def test_delta_is_not_given_without_density(
-    drawn: Build, normal: Any, verdicts_of: Callable[..., Any]
-) -> None:
+def test_delta_is_not_given_without_density(drawn, normal, verdicts_of):
     """SALib takes a class with one value of the response for one without influence."""
     outputs = np.clip(normal @ [2.0, 0.1, 0.0], 0.0, None)  # zero for half of the first parameter
     found = sensitivity.analysis(drawn("delta", normal, outputs, resamples=10))
@@ -114,7 +111,7 @@ def test_delta_is_not_given_without_density(
     assert verdicts_of(found["sensitivity_verdict"]) == ["no_density"]
 
 
-def test_pawn_is_that_of_salib(drawn: Build, normal: Any) -> None:
+def test_pawn_is_that_of_salib(drawn, normal):
     outputs = normal @ WEIGHTS
     found = sensitivity.analysis(drawn("pawn", normal, outputs)).isel(response=0)
     theirs = salib_pawn.analyze({"num_vars": 3, "names": list("abc")}, normal, outputs, S=10)
@@ -124,7 +121,7 @@ def test_pawn_is_that_of_salib(drawn: Build, normal: Any) -> None:
     assert abs(found["pawn"][2] - found["dummy_pawn"]) < 0.1
 
 
-def test_pawn_of_a_linear_model(drawn: Build) -> None:
+def test_pawn_of_a_linear_model(drawn):
     """Against the distance of the two distributions at the middle of each slide."""
     inputs = norm.ppf(qmc.LatinHypercube(3, rng=np.random.default_rng(4)).random(4000))
     found = sensitivity.analysis(drawn("pawn", inputs, inputs @ WEIGHTS, resamples=20))
@@ -138,7 +135,7 @@ def test_pawn_of_a_linear_model(drawn: Build) -> None:
         np.testing.assert_allclose(found["pawn"][0, at], np.median(apart), atol=0.05)
 
 
-def test_distances_are_those_of_kolmogorov_and_smirnov() -> None:
+def test_distances_are_those_of_kolmogorov_and_smirnov():
     """With ties, in unequal slides."""
     rng = np.random.default_rng(1)
     outputs, column = np.sort(rng.integers(20, size=207)).astype(float), rng.random(207)
@@ -151,7 +148,7 @@ def test_distances_are_those_of_kolmogorov_and_smirnov() -> None:
         np.testing.assert_allclose(ours[slide], theirs, atol=1e-12)
 
 
-def test_intervals_of_pawn_hold_the_index_of_endless_runs(drawn: Build) -> None:
+def test_intervals_of_pawn_hold_the_index_of_endless_runs(drawn):
     """The exact index of 3 x1 + x2 follows from the distributions; x3 is inert.
 
     With x1 in the slide about c, the sum is 3 c, plus a uniform number of the slide's width 0.3,
@@ -159,10 +156,10 @@ def test_intervals_of_pawn_hold_the_index_of_endless_runs(drawn: Build) -> None:
     """
     y = np.linspace(0, 4, 4001)
 
-    def trapezium(low: float, wide: float, narrow: float) -> Any:
+    def trapezium(low, wide, narrow):
         """Return the distribution of low + wide u + narrow v, u and v uniform in (0, 1)."""
 
-        def integral(t: Any) -> Any:
+        def integral(t):
             return np.clip(t, 0, None) ** 2 / 2
 
         ends = (0, wide, narrow, wide + narrow)
@@ -188,7 +185,7 @@ def test_intervals_of_pawn_hold_the_index_of_endless_runs(drawn: Build) -> None:
     assert np.mean(held) > 0.9
 
 
-def test_regression_of_a_linear_model(drawn: Build, normal: Any) -> None:
+def test_regression_of_a_linear_model(drawn, normal):
     """Standardised coefficients, to the departure of the sample from unit variance."""
     outputs = normal @ WEIGHTS + 0.01 * np.random.default_rng(1).normal(size=500)
     found = sensitivity.analysis(drawn("regression", normal, outputs)).isel(response=0)
@@ -199,7 +196,7 @@ def test_regression_of_a_linear_model(drawn: Build, normal: Any) -> None:
     assert (found["regression_interval"] < 0.1).all()
 
 
-def test_regression_with_noise_of_known_error(drawn: Build, normal: Any) -> None:
+def test_regression_with_noise_of_known_error(drawn, normal):
     """R^2 and the error of a coefficient, sqrt((1 - R^2)/n), by the textbook."""
     outputs = normal @ WEIGHTS + np.sqrt(5) * np.random.default_rng(1).normal(size=500)
     found = sensitivity.analysis(drawn("regression", normal, outputs, resamples=1000))
@@ -213,9 +210,7 @@ def test_regression_with_noise_of_known_error(drawn: Build, normal: Any) -> None
     np.testing.assert_allclose(found["regression_interval"][0, 2], error, rtol=0.15)
 
 
-def test_ranks_see_through_a_monotone_function(
-    drawn: Build, normal: Any, verdicts_of: Callable[..., Any]
-) -> None:
+def test_ranks_see_through_a_monotone_function(drawn, normal, verdicts_of):
     found = sensitivity.analysis(drawn("regression", normal[:, :1], np.exp(3 * normal[:, 0])))
     np.testing.assert_allclose(found["rank_regression"], 1.0, atol=1e-12)
     np.testing.assert_allclose(found["rank_regression_r_squared"], 1.0, atol=1e-12)
@@ -226,16 +221,14 @@ def test_ranks_see_through_a_monotone_function(
     np.testing.assert_allclose(alone[0, 0], rank, atol=1e-12)  # of a single one they are the same
 
 
-def test_regression_that_describes_nothing_says_so(
-    drawn: Build, normal: Any, verdicts_of: Callable[..., Any]
-) -> None:
+def test_regression_that_describes_nothing_says_so(drawn, normal, verdicts_of):
     found = sensitivity.analysis(drawn("regression", normal, normal[:, 0] ** 2))
     assert verdicts_of(found["sensitivity_verdict"]) == ["not_linear"]
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_seed_and_order(drawn: Build, normal: Any, method: str) -> None:
-    def found(seed: int) -> xr.Dataset:
+def test_seed_and_order(drawn, normal, method):
+    def found(seed):
         outputs = normal[:200] @ WEIGHTS
         return drawn(method, normal[:200], outputs, seed=seed, resamples=5)
 
@@ -247,13 +240,13 @@ def test_seed_and_order(drawn: Build, normal: Any, method: str) -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_no_groups(drawn: Build, normal: Any, method: str) -> None:
+def test_no_groups(drawn, normal, method):
     runs = drawn(method, normal, normal @ WEIGHTS, groups=["a", "a", "b"])
     with pytest.raises(ValueError, match=f"'{method}' has no groups"):
         sensitivity.analysis(runs)
 
 
 @pytest.mark.parametrize("method", ["pawn", "regression"])
-def test_too_few_runs(drawn: Build, normal: Any, method: str) -> None:
+def test_too_few_runs(drawn, normal, method):
     with pytest.raises(ValueError, match="9 runs are too few"):
         sensitivity.analysis(drawn(method, normal[:9], normal[:9] @ WEIGHTS))

@@ -1,7 +1,5 @@
 """Resampling by counts: every row as likely as any other, whatever is held at a time."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -10,12 +8,12 @@ from impactlab.methods import estimators as method
 from impactlab.methods.runs import Sample
 
 
-def _sample(resamples: int, confidence: float = 0.95) -> Sample:
+def _sample(resamples, confidence=0.95):
     given = {"varied": ["x0"], "resamples": resamples, "confidence": confidence, "seed": 0}
     return Sample.of(xr.Dataset(coords={"x0": ("run", [0.0]), "run": [0]}, attrs=given))
 
 
-def test_counts_are_multinomial() -> None:
+def test_counts_are_multinomial():
     """Mean 1, variance 1 - 1/rows, and rows in all."""
     tallies = np.concatenate(list(method.counts(50, 4000, np.random.default_rng(1))))
     assert tallies.shape == (4000, 50)
@@ -24,7 +22,7 @@ def test_counts_are_multinomial() -> None:
     np.testing.assert_allclose(tallies.var(axis=0), 0.98, atol=0.1)
 
 
-def test_chunks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_chunks_change_nothing(monkeypatch):
     whole = np.concatenate(list(method.counts(7, 20, np.random.default_rng(1))))
     monkeypatch.setattr(method, "_CELLS", 21)
     parts = list(method.counts(7, 20, np.random.default_rng(1)))
@@ -32,17 +30,17 @@ def test_chunks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     np.testing.assert_array_equal(np.concatenate(parts), whole)
 
 
-def test_more_rows_than_are_held_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_more_rows_than_are_held_at_a_time(monkeypatch):
     monkeypatch.setattr(method, "_CELLS", 5)
     assert [len(part) for part in method.counts(7, 3, np.random.default_rng(1))] == [1, 1, 1]
 
 
 @pytest.mark.parametrize(("confidence", "quantile"), [(0.95, 1.959964), (0.68, 0.994458)])
-def test_half_width_of_a_mean(confidence: float, quantile: float) -> None:
+def test_half_width_of_a_mean(confidence, quantile):
     """The quantile times the standard error of the mean."""
     rows = np.random.default_rng(2).normal(size=(400, 1))
 
-    def mean(means: Any) -> dict[str, Any]:
+    def mean(means):
         return {"mean": means[..., 0]}
 
     sample = _sample(4000, confidence)

@@ -1,7 +1,6 @@
 """Elementary effects of functions whose effects are known."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,18 +16,18 @@ from impactlab.methods.runs import Sample
 Build = Callable[..., xr.Dataset]
 
 
-def _unit(size: int, groups: list[str] | None = None, number: int = 20) -> Any:
+def _unit(size, groups=None, number=20):
     names = [f"x{i}" for i in range(size)]
     problem = {"num_vars": size, "names": names, "bounds": [[0, 1]] * size, "groups": groups}
     return sampler.sample(problem, number, num_levels=4, seed=5)
 
 
-def _runs(drawn: Build, inputs: Any, outputs: Any, **attrs: Any) -> xr.Dataset:
+def _runs(drawn, inputs, outputs, **attrs):
     given = {"trajectories": 20, "levels": 4}
     return drawn("morris", inputs, outputs, **(given | attrs))
 
 
-def test_linear_function_is_exact(drawn: Build) -> None:
+def test_linear_function_is_exact(drawn):
     unit = _unit(3)
     found = sensitivity.analysis(_runs(drawn, unit, unit @ [3.0, -2.0, 0.0] + 7)).isel(response=0)
     np.testing.assert_allclose(found["morris_mu"], [3, -2, 0], atol=1e-12)
@@ -40,7 +39,7 @@ def test_linear_function_is_exact(drawn: Build) -> None:
     assert found["response_units"] == "N"
 
 
-def test_interaction_shows_in_sigma(drawn: Build) -> None:
+def test_interaction_shows_in_sigma(drawn):
     """An effect of x0 x1 is the other's value: one of four levels."""
     unit = _unit(3, number=400)
     runs = _runs(drawn, unit, unit[:, 0] * unit[:, 1], trajectories=400)
@@ -50,7 +49,7 @@ def test_interaction_shows_in_sigma(drawn: Build) -> None:
     assert found["morris_sigma"][2] == 0
 
 
-def test_inputs_may_be_of_any_distribution(drawn: Build) -> None:
+def test_inputs_may_be_of_any_distribution(drawn):
     """And carry another last digit where they are the same."""
     unit = _unit(3)
     physical = 1e9 + 1e8 * norm.ppf(np.clip(unit, 1e-6, 1 - 1e-6))
@@ -59,12 +58,12 @@ def test_inputs_may_be_of_any_distribution(drawn: Build) -> None:
     np.testing.assert_allclose(sensitivity.analysis(runs)["morris_mu"][0], [3, -2, 0], atol=1e-12)
 
 
-def test_levels_are_told_apart_on_a_large_offset() -> None:
+def test_levels_are_told_apart_on_a_large_offset():
     column = np.array([[1e9], [1e9 + 1], [1e9 + 2], [1e9]])
     assert levels(column)[:, 0].tolist() == [0, 1, 2, 0]
 
 
-def test_groups_have_no_sign(drawn: Build) -> None:
+def test_groups_have_no_sign(drawn):
     groups = ["one", "other", "one"]
     unit = _unit(3, groups)
     runs = _runs(drawn, unit, unit @ [3.0, -2.0, 0.0], groups=groups)
@@ -76,9 +75,7 @@ def test_groups_have_no_sign(drawn: Build) -> None:
 
 
 @pytest.mark.parametrize("groups", [None, ["one", "other", "one"]])
-def test_indices_are_salibs_to_the_last_bit(
-    drawn: Build, ishigami: Any, groups: list[str] | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_indices_are_salibs_to_the_last_bit(drawn, ishigami, groups, monkeypatch):
     seeds = lambda *_: np.random.default_rng(3)  # noqa: E731
     monkeypatch.setattr(Sample, "rng", seeds)
     unit = _unit(3, groups, 150)
@@ -97,15 +94,13 @@ def test_indices_are_salibs_to_the_last_bit(
         np.testing.assert_array_equal(ours["morris_mu"], theirs["mu"])
 
 
-def test_few_trajectories_of_a_rough_function_are_wide(
-    drawn: Build, verdicts_of: Callable[..., Any], ishigami: Any
-) -> None:
+def test_few_trajectories_of_a_rough_function_are_wide(drawn, verdicts_of, ishigami):
     unit = _unit(3)
     found = sensitivity.analysis(_runs(drawn, unit, ishigami.of_unit(unit)))
     assert verdicts_of(found["sensitivity_verdict"]) == ["wide_intervals"]
 
 
-def test_refuses_what_is_not_trajectories(drawn: Build) -> None:
+def test_refuses_what_is_not_trajectories(drawn):
     unit = _unit(3)
     with pytest.raises(ValueError, match="has 79 runs, but 20 trajectories of 3 steps make 80"):
         sensitivity.analysis(_runs(drawn, unit[1:], unit[1:, 0]))

@@ -2,8 +2,6 @@
 
 import tracemalloc
 from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import dask
 import numpy as np
@@ -31,13 +29,13 @@ Z95 = 1.959964
 ORDERS = ("first_order", "total_order")
 
 
-def oscillation(x: Any, times: Any) -> Any:
+def oscillation(x, times):
     """x in (-1, 1); two terms of one parameter each, and one of both."""
     one, two = x[:, :1], x[:, 1:]
     return 3 * one * np.sin(times) + 2 * two * np.sin(2 * times) + 2 * one * two * times
 
 
-def known(times: Any) -> tuple[Any, Any, Any]:
+def known(times):
     """Return variance (time,), and its parts of first and total order, (time, parameter)."""
     both = (2 * times) ** 2 / 9
     first = np.stack([(3 * np.sin(times)) ** 2 / 3, (2 * np.sin(2 * times)) ** 2 / 3], axis=1)
@@ -45,12 +43,10 @@ def known(times: Any) -> tuple[Any, Any, Any]:
 
 
 @pytest.fixture
-def oscillating(sample_runs: Build) -> Build:
+def oscillating(sample_runs):
     """Build a Sobol sample whose contact force oscillates about `offset`."""
 
-    def build(
-        base: int, *, second_order: bool = False, offset: float = 50.0, times: Any = TIMES
-    ) -> xr.Dataset:
+    def build(base, *, second_order=False, offset=50.0, times=TIMES):
         power = 1 << (base - 1).bit_length()  # a sample is nested
         x = 2 * saltelli(["x0", "x1"], power, second_order, 7) - 1
         x = x[: len(x) // power * base]
@@ -62,7 +58,7 @@ def oscillating(sample_runs: Build) -> Build:
     return build
 
 
-def test_known_indices_at_each_time_and_in_all(oscillating: Build) -> None:
+def test_known_indices_at_each_time_and_in_all(oscillating):
     found = over_time.analysis(oscillating(4096)).sel(history="contact_force")
     variance, *parts = known(TIMES)
     for order, part in zip(ORDERS, parts, strict=True):
@@ -84,7 +80,7 @@ def test_known_indices_at_each_time_and_in_all(oscillating: Build) -> None:
 
 
 @pytest.mark.parametrize("second_order", [False, True])
-def test_one_time_has_the_indices_of_that_number(oscillating: Build, second_order: bool) -> None:
+def test_one_time_has_the_indices_of_that_number(oscillating, second_order):
     """Indices of a small sample depend on the mean that outputs are centred on."""
     runs = oscillating(512, second_order=second_order)
     scalar = sensitivity.analysis(runs).sel(response="peak_force")
@@ -95,7 +91,7 @@ def test_one_time_has_the_indices_of_that_number(oscillating: Build, second_orde
         np.testing.assert_allclose(at[interval], scalar[f"{order}_interval"], rtol=1e-6)
 
 
-def test_base_samples_with_a_failed_run_are_left_out_and_counted(oscillating: Build) -> None:
+def test_base_samples_with_a_failed_run_are_left_out_and_counted(oscillating):
     runs = oscillating(256, second_order=True)
     table = runs["status"].values.reshape(256, -1)
     table[200, 0] = table[17, 2] = STATUS_FLAGS["diverged"][0]
@@ -114,7 +110,7 @@ def test_base_samples_with_a_failed_run_are_left_out_and_counted(oscillating: Bu
 
 
 @pytest.mark.parametrize("failed", [60, 256])
-def test_too_many_failed_runs_give_no_index(oscillating: Build, failed: int) -> None:
+def test_too_many_failed_runs_give_no_index(oscillating, failed):
     runs = oscillating(256)
     runs["status"].values.reshape(256, -1)[:failed, 1] = STATUS_FLAGS["diverged"][0]
     found = over_time.analysis(runs).isel(history=0)
@@ -125,7 +121,7 @@ def test_too_many_failed_runs_give_no_index(oscillating: Build, failed: int) -> 
         assert found[name].dtype.kind != "f" or found[name].isnull().all()
 
 
-def test_a_history_that_is_the_same_in_all_runs_has_no_index(oscillating: Build) -> None:
+def test_a_history_that_is_the_same_in_all_runs_has_no_index(oscillating):
     runs = oscillating(64)
     round_off = 1 + 1e-13 * np.random.default_rng(1).normal(size=runs["contact_force"].shape)
     runs["contact_force"][:] = 0.1 * TIMES * round_off
@@ -135,9 +131,7 @@ def test_a_history_that_is_the_same_in_all_runs_has_no_index(oscillating: Build)
     assert (found["time_verdict"] == TimeVerdict.CONSTANT).all()
 
 
-def test_blocks_change_no_bit(
-    oscillating: Build, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_blocks_change_no_bit(oscillating, monkeypatch, tmp_path):
     runs = oscillating(333)
     sample, good = Sample.of(runs), np.arange(333) != 4
     whole, _ = over_time.sums(sample, "contact_force", good, slice(0, 7))
@@ -153,16 +147,14 @@ def test_blocks_change_no_bit(
     xr.testing.assert_allclose(over_time.analysis(runs), found, rtol=1e-12)
 
 
-def test_memory_does_not_grow_with_the_runs(
-    oscillating: Build, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_memory_does_not_grow_with_the_runs(oscillating, monkeypatch, tmp_path):
     """From shards to runs.nc, analysis and caption; the file has the digests of one block."""
     monkeypatch.setattr(over_time, "ROWS", 64)
     monkeypatch.setattr(over_time, "CELLS", 50_000)
     monkeypatch.setattr(files, "_BLOCK", 1 << 15)
     path = tmp_path / "runs.nc"
 
-    def peak(base: int) -> float:
+    def peak(base):
         runs = oscillating(base, times=np.linspace(0.0, 1.0, 100)).assign_attrs(resamples=50)
         write_netcdf(runs, path, "runs")
         with opened(path, "runs") as whole:
@@ -193,7 +185,7 @@ def test_memory_does_not_grow_with_the_runs(
     assert peak(720) - peak(90) < 0.8 * more
 
 
-def test_the_table_has_generalised_indices_and_the_file_all(oscillating: Build) -> None:
+def test_the_table_has_generalised_indices_and_the_file_all(oscillating):
     found = analyse(oscillating(64))
     kept = sensitivity_variables(found)
     assert {"first_order_over_time", "time_verdict", "base_samples_left_out"} <= set(kept)
@@ -207,7 +199,7 @@ def test_the_table_has_generalised_indices_and_the_file_all(oscillating: Build) 
     assert rows[0]["verdict"] == "wide_intervals"
 
 
-def test_only_a_sobol_sample_with_histories_has_them(oscillating: Build) -> None:
+def test_only_a_sobol_sample_with_histories_has_them(oscillating):
     runs = oscillating(64)
     assert over_time.applies(runs)
     assert not over_time.applies(runs.drop_vars("contact_force"))

@@ -1,6 +1,6 @@
 """Analytic indices of Ishigami and Sobol-G, intervals and their coverage, and the guards."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -20,11 +20,11 @@ Build = Callable[..., xr.Dataset]
 Z95 = 1.959964
 
 
-def _sample(dimension: int, base: int, second_order: bool = True) -> Any:
+def _sample(dimension, base, second_order=True):
     return saltelli([f"x{i}" for i in range(dimension)], base, second_order, 7)
 
 
-def _within_three_standard_errors(found: xr.Dataset, name: str, expected: Any) -> None:
+def _within_three_standard_errors(found, name, expected):
     error = np.abs(found[name].values[0] - expected)
     standard = found[f"{name}_interval"].values[0] / Z95
     off_diagonal = ~np.eye(len(expected), dtype=bool) if error.ndim == 2 else slice(None)
@@ -34,7 +34,7 @@ def _within_three_standard_errors(found: xr.Dataset, name: str, expected: Any) -
 
 
 @pytest.mark.parametrize("name", ["ishigami", "sobol_g"])
-def test_analytic_indices(sample_runs: Build, name: str, request: pytest.FixtureRequest) -> None:
+def test_analytic_indices(sample_runs, name, request):
     known: Any = request.getfixturevalue(name)
     x, names = _sample(known.size, 2048), [f"x{i}" for i in range(known.size)]
     found = sensitivity.analysis(sample_runs(names, 2048, peak_force=known.of_unit(x)))
@@ -47,7 +47,7 @@ def test_analytic_indices(sample_runs: Build, name: str, request: pytest.Fixture
     assert np.isnan(np.diagonal(matrix)).all()
 
 
-def test_without_second_order(sample_runs: Build, ishigami: Any) -> None:
+def test_without_second_order(sample_runs, ishigami):
     outputs = ishigami.of_unit(_sample(3, 1024, second_order=False))
     runs = sample_runs(["x0", "x1", "x2"], 1024, second_order=False, peak_force=outputs)
     found = sensitivity.analysis(runs)
@@ -56,27 +56,27 @@ def test_without_second_order(sample_runs: Build, ishigami: Any) -> None:
     _within_three_standard_errors(found, "total_order", ishigami.total)
 
 
-def test_indices_and_intervals_are_those_of_covariances(sample_runs: Build, ishigami: Any) -> None:
+def test_indices_and_intervals_are_those_of_covariances(sample_runs, ishigami):
     """The formulas pair by pair, on all base samples and without each of the eight replicates."""
     outputs = ishigami.of_unit(_sample(3, 64))
     found = sensitivity.analysis(sample_runs(["x0", "x1", "x2"], 64, peak_force=outputs))
     a, b, ab, ba = salib.separate_output_values(outputs, 3, 64, True)
     without = [np.arange(64) % 8 != replicate for replicate in range(8)]
 
-    def covariance(*columns: Any) -> float:
+    def covariance(*columns):
         return float(np.mean(np.prod([column - column.mean() for column in columns], axis=0)))
 
-    def total(r: Any, i: int) -> float:
+    def total(r, i):
         y, z = ab[r, i], ba[r, i]
         above = np.mean((a[r] - y) ** 2 + (b[r] - z) ** 2)
         return float(above / sum(covariance(x, x) for x in (a[r], y, b[r], z)))
 
-    def first(r: Any, i: int) -> float:
+    def first(r, i):
         y, z, control = ab[r, i], ba[r, i], covariance(a[r], b[r]) * (1 - total(r, i))
         same = covariance(b[r], y) + covariance(a[r], z) - 2 * control
         return 2 * same / sum(covariance(x, x) for x in (a[r], y, b[r], z))
 
-    def second(r: Any, i: int, j: int) -> float:
+    def second(r, i, j):
         runs = ab[r, i], ba[r, i], ab[r, j], ba[r, j]
         control = covariance(a[r], b[r]) * max(1 - total(r, i) - total(r, j), 0)
         both = covariance(runs[0], runs[3]) + covariance(runs[2], runs[1]) - 2 * control
@@ -92,7 +92,7 @@ def test_indices_and_intervals_are_those_of_covariances(sample_runs: Build, ishi
         np.testing.assert_allclose(half_width, 2.364624 * error, rtol=1e-6)  # Student's t of 7
 
 
-def test_errors_are_smaller_than_those_of_salib(sample_runs: Build, ishigami: Any) -> None:
+def test_errors_are_smaller_than_those_of_salib(sample_runs, ishigami):
     """The estimators of SALib, of the same runs, over 40 samples."""
     names = ["x0", "x1", "x2"]
     problem = {"num_vars": 3, "names": names, "bounds": [[0.0, 1.0]] * 3}
@@ -116,9 +116,7 @@ def test_errors_are_smaller_than_those_of_salib(sample_runs: Build, ishigami: An
     assert ratios["S2"] < 0.5
 
 
-def test_blocks_change_nothing(
-    sample_runs: Build, ishigami: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_blocks_change_nothing(sample_runs, ishigami, monkeypatch):
     outputs, names = ishigami.of_unit(_sample(3, 64)), ["x0", "x1", "x2"]
     runs = sample_runs(names, 64, peak_force=outputs)
     whole = sensitivity.analysis(runs)
@@ -126,7 +124,7 @@ def test_blocks_change_nothing(
     xr.testing.assert_allclose(sensitivity.analysis(runs), whole, rtol=1e-12)
 
 
-def _product(i: int, j: int, slope: float) -> Callable[[Any], Any]:
+def _product(i, j, slope):
     return lambda x: slope * (x[:, i] + x[:, j]) + 3 * (x[:, i] - 0.5) * (x[:, j] - 0.5)
 
 
@@ -135,8 +133,8 @@ def _product(i: int, j: int, slope: float) -> Callable[[Any], Any]:
     [(6, (0, 3), 512, 1.0), (6, (0, 3), 128, 0.0), (5, (0, 1), 64, 0.0), (10, (1, 7), 128, 0.0)],
 )
 def test_intervals_cover_where_dimensions_of_a_and_b_depend_on_each_other(
-    dimension: int, pair: tuple[int, int], base: int, slope: float
-) -> None:
+    dimension, pair, base, slope
+):
     """The parity of bits of four dimensions of one sequence, two of them of B, is constant."""
     names, function = [f"x{i}" for i in range(dimension)], _product(*pair, slope)
     share = 1 / 12 / (2 / 12 + 9 / 144) if slope else 0.0
@@ -153,7 +151,7 @@ def test_intervals_cover_where_dimensions_of_a_and_b_depend_on_each_other(
     assert alarms <= 1
 
 
-def test_dependent_base_samples_are_marked(sample_runs: Build) -> None:
+def test_dependent_base_samples_are_marked(sample_runs):
     """The product of all four signs is positive: a pure interaction has a first order above 0."""
     a, _, _, b = np.moveaxis(saltelli(["x0", "x1"], 128, False, 7).reshape(128, 4, 2) - 0.5, 1, 0)
     b[:, 0] *= np.sign(np.prod(a * b, axis=1))
@@ -170,14 +168,14 @@ def test_dependent_base_samples_are_marked(sample_runs: Build) -> None:
     assert int(remarks) & masks["dependent_bases"]
 
 
-def test_a_sample_without_replicates_is_refused(sample_runs: Build, good: Any) -> None:
+def test_a_sample_without_replicates_is_refused(sample_runs, good):
     runs = sample_runs(NAMES, 64, peak_force=good)
     del runs.attrs["replicates"]
     with pytest.raises(ValueError, match=r"'synthetic' has a sample of an earlier version"):
         sensitivity.analysis(runs)
 
 
-def test_a_small_share_is_real_and_an_unseen_parameter_is_not(sample_runs: Build) -> None:
+def test_a_small_share_is_real_and_an_unseen_parameter_is_not(sample_runs):
     """A share of 0.024 is far below the index that mean products give a dummy, yet well known."""
     unit = _sample(4, 1024, second_order=False)
     outputs = unit[:, :3] @ np.sqrt([0.85, 0.126, 0.024])
@@ -195,7 +193,7 @@ def test_a_small_share_is_real_and_an_unseen_parameter_is_not(sample_runs: Build
     assert total.numerically_lost.tolist() == [False, False, True, False]
 
 
-def test_by_samples_are_the_indices_of_smaller_studies(sample_runs: Build, ishigami: Any) -> None:
+def test_by_samples_are_the_indices_of_smaller_studies(sample_runs, ishigami):
     outputs, names = ishigami.of_unit(_sample(3, 512)), ["x0", "x1", "x2"]
     found = sensitivity.analysis(sample_runs(names, 512, peak_force=outputs))
     assert found["base_samples"].values.tolist() == [16, 32, 64, 128, 256, 512]
@@ -212,7 +210,7 @@ def test_by_samples_are_the_indices_of_smaller_studies(sample_runs: Build, ishig
     assert (widths[1:] < widths[:-1]).all()  # narrower with every doubling
 
 
-def test_a_start_that_does_not_vary_has_no_indices_yet(sample_runs: Build, ishigami: Any) -> None:
+def test_a_start_that_does_not_vary_has_no_indices_yet(sample_runs, ishigami):
     outputs = ishigami.of_unit(_sample(3, 256))
     outputs[: 16 * 8] = 1.0
     found = sensitivity.analysis(sample_runs(["x0", "x1", "x2"], 256, peak_force=outputs))
@@ -221,7 +219,7 @@ def test_a_start_that_does_not_vary_has_no_indices_yet(sample_runs: Build, ishig
     assert np.isfinite(series.sel(base_samples=[32, 256])).all()
 
 
-def test_groups_have_the_closed_indices(sample_runs: Build, ishigami: Any) -> None:
+def test_groups_have_the_closed_indices(sample_runs, ishigami):
     """x0 and x2 as one: their closed index is S0 + S2 + S02, and no interaction is left."""
     names, groups = ["x0", "x1", "x2"], ["one", "other", "one"]
     outputs = ishigami.of_unit(saltelli(groups, 1024, True, 7))
@@ -238,19 +236,17 @@ NAMES = ["velocity", "beam_depth", "beam_width"]
 
 
 @pytest.fixture
-def good(ishigami: Any) -> Any:
+def good(ishigami):
     return ishigami.of_unit(_sample(3, 64))
 
 
-def _assert_no_indices(found: xr.Dataset, response: str) -> None:
+def _assert_no_indices(found, response):
     for name in ("first_order", "total_order", "second_order"):
         for key in (name, f"{name}_interval"):
             assert np.isnan(found[key].sel(response=response)).all()
 
 
-def test_a_single_gap_leaves_no_index(
-    sample_runs: Build, verdicts_of: Callable[..., Any], good: Any
-) -> None:
+def test_a_single_gap_leaves_no_index(sample_runs, verdicts_of, good):
     gap, infinite = good.copy(), good.copy()
     gap[13], infinite[200] = np.nan, np.inf
     runs = sample_runs(NAMES, 64, peak_force=gap, impulse=good, restitution=infinite)
@@ -262,9 +258,7 @@ def test_a_single_gap_leaves_no_index(
     assert np.isfinite(found["first_order"].sel(response="impulse")).all()
 
 
-def test_a_failed_run_leaves_no_index_whatever_its_number(
-    sample_runs: Build, verdicts_of: Callable[..., Any], good: Any
-) -> None:
+def test_a_failed_run_leaves_no_index_whatever_its_number(sample_runs, verdicts_of, good):
     runs = sample_runs(NAMES, 64, contact_duration=good, number_of_contacts=good)
     runs["status"][5] = 2  # first contact unfinished: matters to the contact duration alone
     found = sensitivity.analysis(runs)
@@ -273,9 +267,7 @@ def test_a_failed_run_leaves_no_index_whatever_its_number(
 
 
 @pytest.mark.parametrize("level", [0.0, 345e6, 1e-12])
-def test_a_constant_response_has_undefined_indices(
-    sample_runs: Build, verdicts_of: Callable[..., Any], good: Any, level: float
-) -> None:
+def test_a_constant_response_has_undefined_indices(sample_runs, verdicts_of, good, level):
     jitter = level * (1 + 1e-12 * np.sign(good))
     runs = sample_runs(NAMES, 64, remote_plastic_strain=jitter)
     found = sensitivity.analysis(runs)
@@ -283,9 +275,7 @@ def test_a_constant_response_has_undefined_indices(
     _assert_no_indices(found, "remote_plastic_strain")
 
 
-def test_a_response_constant_over_the_base_samples_is_constant(
-    sample_runs: Build, verdicts_of: Callable[..., Any]
-) -> None:
+def test_a_response_constant_over_the_base_samples_is_constant(sample_runs, verdicts_of):
     outputs = np.zeros(64 * 8)
     outputs[3::8] = 1.0
     found = sensitivity.analysis(sample_runs(NAMES, 64, peak_plastic_strain=outputs))
@@ -293,9 +283,7 @@ def test_a_response_constant_over_the_base_samples_is_constant(
     _assert_no_indices(found, "peak_plastic_strain")
 
 
-def test_a_mostly_constant_response_carries_a_warning(
-    sample_runs: Build, verdicts_of: Callable[..., Any], good: Any
-) -> None:
+def test_a_mostly_constant_response_carries_a_warning(sample_runs, verdicts_of, good):
     rare = np.where(good > np.quantile(good, 0.92), good, 0.0)
     found = sensitivity.analysis(sample_runs(NAMES, 64, remote_plastic_strain=rare))
     assert verdicts_of(found["sensitivity_verdict"]) == ["mostly_constant"]
@@ -303,12 +291,12 @@ def test_a_mostly_constant_response_carries_a_warning(
     assert "mostly_constant" not in found["sensitivity_verdict"].attrs["sound_flags"].split()
 
 
-def _intervals(runs: xr.Dataset, response: str = "peak_force") -> Sequence[float]:
+def _intervals(runs, response="peak_force"):
     return sensitivity.analysis(runs)["first_order_interval"].sel(response=response).values.tolist()
 
 
-def test_confidence_comes_from_the_study(sample_runs: Build, good: Any) -> None:
-    def found(**attrs: Any) -> xr.DataArray:
+def test_confidence_comes_from_the_study(sample_runs, good):
+    def found(**attrs):
         runs = sample_runs(NAMES, 64, attrs=attrs, peak_force=good)
         return sensitivity.analysis(runs)["first_order_interval"]
 
@@ -318,12 +306,12 @@ def test_confidence_comes_from_the_study(sample_runs: Build, good: Any) -> None:
     assert "resamples" not in wide.attrs
 
 
-def test_order_of_runs_is_that_of_the_run_coordinate(sample_runs: Build, good: Any) -> None:
+def test_order_of_runs_is_that_of_the_run_coordinate(sample_runs, good):
     runs = sample_runs(NAMES, 64, peak_force=good)
     assert _intervals(runs.isel(run=slice(None, None, -1))) == _intervals(runs)
 
 
-def test_refuses_a_part_of_a_sample(sample_runs: Build, good: Any) -> None:
+def test_refuses_a_part_of_a_sample(sample_runs, good):
     runs = sample_runs(NAMES, 64, peak_force=good).isel(run=slice(0, 504))
     with pytest.raises(ValueError, match=r"'synthetic' has 504 runs, but .* make 512"):
         sensitivity.analysis(runs)

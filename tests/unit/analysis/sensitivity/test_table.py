@@ -2,8 +2,6 @@
 
 import csv
 from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +17,7 @@ PROBLEM = {"num_vars": 3, "names": list("abc"), "bounds": [[0, 1]] * 3}
 
 
 @pytest.fixture
-def found(drawn: Build, ishigami: Any) -> xr.Dataset:
+def found(drawn, ishigami):
     unit = saltelli(PROBLEM["names"], 64, True, 7)
     outputs = ishigami.of_unit(unit)
     broken = np.where(outputs == outputs.max(), np.nan, outputs)
@@ -28,7 +26,7 @@ def found(drawn: Build, ishigami: Any) -> xr.Dataset:
     return analyse(drawn("sobol", unit, named, **attrs))
 
 
-def test_every_index_has_a_row(found: xr.Dataset, tmp_path: Path) -> None:
+def test_every_index_has_a_row(found, tmp_path):
     write_csv(found, tmp_path / "new" / "indices.csv")
     with (tmp_path / "new" / "indices.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -49,7 +47,7 @@ def test_every_index_has_a_row(found: xr.Dataset, tmp_path: Path) -> None:
     assert (row["other_parameter"], row["base_samples"]) == ("", "")
 
 
-def test_pairs_once_and_sizes(found: xr.Dataset) -> None:
+def test_pairs_once_and_sizes(found):
     rows = [row for row in table_rows(found) if row["response"] == "peak_force"]
     pairs = [
         (row["parameter"], row["other_parameter"]) for row in rows if row["index"] == "second_order"
@@ -61,15 +59,13 @@ def test_pairs_once_and_sizes(found: xr.Dataset) -> None:
     assert [row["value"] for row in sizes[3:6]] == at.values.tolist()
 
 
-def test_what_is_not_given_is_an_empty_cell(found: xr.Dataset, tmp_path: Path) -> None:
+def test_what_is_not_given_is_an_empty_cell(found, tmp_path):
     write_csv(found, tmp_path / "indices.csv")
     lines = (tmp_path / "indices.csv").read_text("utf-8").splitlines()
     assert "impulse,x0,,,first_order,,,,1,failed_runs" in lines
 
 
-def test_netcdf_holds_what_the_table_holds(
-    found: xr.Dataset, stored: Callable[[xr.Dataset], xr.Dataset]
-) -> None:
+def test_netcdf_holds_what_the_table_holds(found, stored):
     kept = stored(sensitivity_variables(found))
     assert {"first_order", "first_order_interval", "sensitivity_verdict"} <= set(kept)
     assert "mean" in found
@@ -77,7 +73,7 @@ def test_netcdf_holds_what_the_table_holds(
     assert list(map(str, table_rows(kept))) == list(map(str, table_rows(found)))
 
 
-def test_effects_have_the_unit_of_the_response(drawn: Build) -> None:
+def test_effects_have_the_unit_of_the_response(drawn):
     unit = morris_sampler.sample(PROBLEM, 20, seed=5)
     attrs = {"trajectories": 20, "levels": 4}
     found = analyse(drawn("morris", unit, unit @ [3.0, 2.0, 1.0], **attrs))
@@ -90,7 +86,7 @@ def test_effects_have_the_unit_of_the_response(drawn: Build) -> None:
     np.testing.assert_allclose((row["value"], row["low"], row["high"]), 3.0, rtol=1e-12)
 
 
-def test_a_grid_has_none(grid_runs: Callable[..., xr.Dataset]) -> None:
+def test_a_grid_has_none(grid_runs):
     found = analyse(grid_runs({"velocity": [1.0, 2.0]}, peak_force=lambda velocity: velocity))
     assert not sensitivity_variables(found)
     assert list(table_rows(found)) == []

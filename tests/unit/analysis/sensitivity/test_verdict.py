@@ -20,29 +20,29 @@ BASE = 512
 
 
 @pytest.fixture(scope="module")
-def unit() -> Any:
+def unit():
     return saltelli(NAMES, BASE, True, 7)
 
 
-def _verdict(drawn: Build, read: Read, unit: Any, outputs: Any, **attrs: Any) -> str:
+def _verdict(drawn, read, unit, outputs, **attrs):
     runs = drawn("sobol", unit, outputs, base_samples=BASE, second_order=1, **attrs)
     return str(read(sensitivity.analysis(runs)["sensitivity_verdict"])[0])
 
 
-def _remarks(found: xr.Dataset) -> set[str]:
+def _remarks(found):
     """Return the verdict on the first response, by CF alone."""
     array = found["sensitivity_remarks"]
     pairs = zip(array.attrs["flag_masks"], array.attrs["flag_meanings"].split(), strict=True)
     return {name for mask, name in pairs if int(array[0]) & mask}
 
 
-def test_usable(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+def test_usable(drawn, verdicts_of, unit):
     assert _verdict(drawn, verdicts_of, unit, unit @ [1.0, 1.0, 1.0]) == "usable"
     runs = drawn("sobol", unit, unit @ [1.0, 1.0, 1.0], base_samples=BASE, second_order=1)
     assert _remarks(sensitivity.analysis(runs)) == set()
 
 
-def test_jumps(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+def test_jumps(drawn, verdicts_of, unit):
     """A number of contacts."""
     unit = unit[: 64 * 8]
     outputs = np.floor(unit @ [2.0, 0.5, 0.5])
@@ -53,14 +53,14 @@ def test_jumps(drawn: Build, verdicts_of: Read, unit: Any) -> None:
     assert np.isfinite(found["first_order"]).all()  # shown as what they are
 
 
-def test_few_runs_carry_the_variance(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+def test_few_runs_carry_the_variance(drawn, verdicts_of, unit):
     outputs = np.exp(3.5 * norm.ppf(np.clip(unit[:, 0], 1e-4, 1 - 1e-4)) + unit[:, 1])
     runs = drawn("sobol", unit, outputs, base_samples=BASE, second_order=1)
     assert _remarks(sensitivity.analysis(runs)) >= {"few_runs_carry_it"}
     assert not verdict.of_outputs(norm.ppf(unit[:, 0].clip(1e-4, 1 - 1e-4)), [unit[:, 0]], 0.0)
 
 
-def test_a_part_that_all_but_stands_still_is_constant() -> None:
+def test_a_part_that_all_but_stands_still_is_constant():
     """Its variance, by which indices are divided, is nothing beside that of the whole."""
     part, rest = np.array([0.0, 1e-5, 0.0, 1e-5]), np.array([-1.0, 1.0, -1.0, 1.0])
     assert verdict.still(np.concatenate([part, rest]), [part])
@@ -68,7 +68,7 @@ def test_a_part_that_all_but_stands_still_is_constant() -> None:
     assert not verdict.still(np.concatenate([100 * part, rest]), [100 * part])
 
 
-def _found(first: Any, total: Any, margin: float) -> dict[str, Any]:
+def _found(first, total, margin):
     first, total = np.array(first), np.array(total)
     margins = {f"{name}_interval": 0 * first + margin for name in ("first_order", "total_order")}
     return {"first_order": first, "total_order": total} | margins
@@ -88,12 +88,12 @@ def _found(first: Any, total: Any, margin: float) -> dict[str, Any]:
         ([0.5, 0.2], [0.5, 0.3], np.nan, "WIDE_INTERVALS"),
     ],
 )
-def test_shares_that_contradict_themselves(first: Any, total: Any, margin: Any, name: str) -> None:
+def test_shares_that_contradict_themselves(first, total, margin, name):
     said = verdict.of_orders(_found(first, total, margin))
     assert [entry.name for entry in said] == [name] * (name != "USABLE")
 
 
-def _broken(drawn: Build, unit: Any, share: float, **attrs: Any) -> xr.Dataset:
+def _broken(drawn, unit, share, **attrs):
     """A part of the runs failed, a fifth response; the other response is whole."""
     outputs = np.sin(3 * unit[:, 0]) + unit[:, 1] * unit[:, 2]
     gaps = outputs.copy()
@@ -102,14 +102,14 @@ def _broken(drawn: Build, unit: Any, share: float, **attrs: Any) -> xr.Dataset:
     return drawn("sobol", unit, named, base_samples=BASE, second_order=1, **attrs)
 
 
-def test_failed_runs_leave_no_index(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+def test_failed_runs_leave_no_index(drawn, verdicts_of, unit):
     found = sensitivity.analysis(_broken(drawn, unit, 0.02))
     assert verdicts_of(found["sensitivity_verdict"]) == ["failed_runs", "usable"]
     assert np.isnan(found["first_order"][0]).all()
     assert found["imputed_share"].values.tolist() == [0, 0]
 
 
-def test_imputed_runs_are_marked(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+def test_imputed_runs_are_marked(drawn, verdicts_of, unit):
     runs = _broken(drawn, unit, 0.05, failed_runs="impute")
     found = sensitivity.analysis(runs)
     assert verdicts_of(found["sensitivity_verdict"]) == ["imputed", "usable"]
@@ -121,7 +121,7 @@ def test_imputed_runs_are_marked(drawn: Build, verdicts_of: Read, unit: Any) -> 
         np.testing.assert_allclose(found[name][0], found[name][1], atol=0.01)
 
 
-def test_too_few_runs_to_impute(drawn: Build, verdicts_of: Read, unit: Any) -> None:
+def test_too_few_runs_to_impute(drawn, verdicts_of, unit):
     runs = _broken(drawn, unit, 0.25, failed_runs="impute")
     found = sensitivity.analysis(runs)
     assert verdicts_of(found["sensitivity_verdict"]) == ["too_few_runs", "usable"]
@@ -131,8 +131,8 @@ def test_too_few_runs_to_impute(drawn: Build, verdicts_of: Read, unit: Any) -> N
 
 @pytest.mark.parametrize("where", ["anywhere", "where a parameter is large"])
 def test_a_surrogate_that_misses_more_than_a_tenth_supplies_nothing(
-    drawn: Build, verdicts_of: Read, unit: Any, where: str
-) -> None:
+    drawn, verdicts_of, unit, where
+):
     outputs = unit[:, 0] + 0.4 * np.sin(40 * unit[:, 0] * (1 + unit[:, 1]))
     failed = np.random.default_rng(1).random(len(unit)) < 0.1
     failed = failed if where == "anywhere" else unit[:, 0] > 0.92
@@ -144,7 +144,7 @@ def test_a_surrogate_that_misses_more_than_a_tenth_supplies_nothing(
     assert found["imputed_share"].item() == 0
 
 
-def test_supplied_values_widen_the_interval_of_an_inert_parameter(drawn: Build, unit: Any) -> None:
+def test_supplied_values_widen_the_interval_of_an_inert_parameter(drawn, unit):
     """Their errors differ between near-copies of a run, which an inert parameter never does."""
     outputs = unit[:, 0] + 0.6 * unit[:, 1] + 0.15 * np.sin(9 * unit[:, 0] * (1 + unit[:, 1]))
     failed = np.random.default_rng(2).random(len(unit)) < 0.1
@@ -156,7 +156,7 @@ def test_supplied_values_widen_the_interval_of_an_inert_parameter(drawn: Build, 
     assert found["total_order"].isel(parameter=2, response=1).item() == pytest.approx(0, abs=1e-12)
 
 
-def test_imputing_without_a_gap_changes_nothing(drawn: Build, unit: Any) -> None:
+def test_imputing_without_a_gap_changes_nothing(drawn, unit):
     kept = sensitivity.analysis(_broken(drawn, unit, 0.0))
     xr.testing.assert_equal(
         kept, sensitivity.analysis(_broken(drawn, unit, 0, failed_runs="impute"))
@@ -164,9 +164,7 @@ def test_imputing_without_a_gap_changes_nothing(drawn: Build, unit: Any) -> None
 
 
 @pytest.mark.parametrize("method", ["sobol", "morris", "fast", "delta", "pawn", "regression"])
-def test_constants_and_failures_of_every_method(
-    drawn: Build, verdicts_of: Read, method: str
-) -> None:
+def test_constants_and_failures_of_every_method(drawn, verdicts_of, method):
     """A seeded failure, one constant response, one NaN without a reason: SALib sees none."""
     unit = np.tile(np.tril(np.ones((4, 3)), -1), (64, 1))  # trajectories for Morris
     number = 252 if method == "fast" else 256
@@ -191,9 +189,7 @@ def test_constants_and_failures_of_every_method(
 
 
 @pytest.mark.parametrize("method", ["fast", "delta", "pawn", "regression"])
-def test_mostly_constant_responses_break_nothing(
-    drawn: Build, verdicts_of: Read, method: str
-) -> None:
+def test_mostly_constant_responses_break_nothing(drawn, verdicts_of, method):
     """Resamples of them may not vary at all."""
     unit = np.random.default_rng(1).random((252, 3))
     outputs = np.zeros(252)

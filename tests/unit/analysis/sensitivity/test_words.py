@@ -4,13 +4,8 @@ The model is additive, so that its indices are known: the Sobol indices in close
 PAWN by quadrature over the distributions of its parts.
 """
 
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
-
 import numpy as np
 import pytest
-import xarray as xr
 
 import impactlab as il
 from impactlab.analysis import sensitivity
@@ -23,11 +18,11 @@ LAW = il.Choice(list(OFFSET), weights=[6, 3, 1])
 UNIFORM = il.Uniform(0, 1)
 
 
-def additive(law: str, x: float, y: float) -> float:
+def additive(law, x, y):
     return OFFSET[law] + SLOPES[0] * x + SLOPES[1] * y
 
 
-def shares() -> Any:
+def shares():
     """Variances of the three terms over their sum; that of a uniform number is a twelfth."""
     offset = np.array(list(OFFSET.values()))
     variance = WEIGHTS @ offset**2 - (WEIGHTS @ offset) ** 2
@@ -35,11 +30,11 @@ def shares() -> Any:
     return parts / parts.sum()
 
 
-def distributions(weights: Any) -> tuple[Any, Any, Any, Any]:
+def distributions(weights):
     """Return t, the distribution of the response at t, and that given each word, and given x."""
     t, middles = np.linspace(-1, 9, 4001), (np.arange(400) + 0.5) / 400
 
-    def ramp(shift: Any) -> Any:  # with x known, y alone is left
+    def ramp(shift):  # with x known, y alone is left
         return np.clip((t - shift) / SLOPES[1], 0, 1)
 
     of_numbers = [
@@ -53,11 +48,11 @@ def distributions(weights: Any) -> tuple[Any, Any, Any, Any]:
 
 
 @pytest.fixture
-def indices(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Any], xr.Dataset]:
+def indices(tmp_path, monkeypatch):
     """Run a study and return its analysis, through the files of both."""
     monkeypatch.chdir(tmp_path)
 
-    def found(sampling: Any) -> xr.Dataset:
+    def found(sampling):
         study = il.Study(
             title="Words", function=additive, sampling=sampling, analysis={"resamples": 30}
         )
@@ -70,7 +65,7 @@ def indices(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Any], 
 PARAMETERS = {"law": LAW, "x": UNIFORM, "y": UNIFORM}
 
 
-def test_sobol_indices_of_a_choice_with_unequal_weights(indices: Any) -> None:
+def test_sobol_indices_of_a_choice_with_unequal_weights(indices):
     found = indices(il.Sobol(base_samples=1024, parameters=PARAMETERS))
     for order in ("first_order", "total_order"):
         np.testing.assert_allclose(found[order], shares(), atol=0.02)
@@ -79,7 +74,7 @@ def test_sobol_indices_of_a_choice_with_unequal_weights(indices: Any) -> None:
     assert not any(str(name).startswith("surrogate") for name in found)
 
 
-def test_delta_of_a_choice(indices: Any) -> None:
+def test_delta_of_a_choice(indices):
     found = indices(il.Delta(samples=800, parameters=PARAMETERS))
     t, whole, of_words, of_x = distributions(WEIGHTS)
     density = np.gradient(whole, t)
@@ -94,7 +89,7 @@ def test_delta_of_a_choice(indices: Any) -> None:
     assert (found["delta_first_order_interval"] < 0.08).all()
 
 
-def test_pawn_of_a_choice(indices: Any) -> None:
+def test_pawn_of_a_choice(indices):
     law = il.Choice(list(OFFSET), weights=[0.2, 0.6, 0.2])
     found = indices(il.Pawn(samples=2000, parameters=PARAMETERS | {"law": law}))
     _, whole, of_words, of_x = distributions(np.array([0.2, 0.6, 0.2]))
@@ -107,7 +102,7 @@ def test_pawn_of_a_choice(indices: Any) -> None:
     np.testing.assert_allclose(found["pawn"][1], np.median(slides), atol=0.04)
 
 
-def test_the_order_of_the_words_changes_nothing(indices: Any) -> None:
+def test_the_order_of_the_words_changes_nothing(indices):
     """They are no numbers: 1200 runs tell them apart, whatever their names and places."""
     place = np.random.default_rng(1).integers(3, size=1200).astype(float)
     inputs = np.column_stack([place, np.array([5.0, 2.0, 9.0])[place.astype(int)]])
@@ -120,7 +115,7 @@ def test_the_order_of_the_words_changes_nothing(indices: Any) -> None:
 
 
 @pytest.mark.parametrize("method", ["morris", "fast", "regression"])
-def test_methods_that_need_an_order_refuse_stored_words(drawn: Any, method: str) -> None:
+def test_methods_that_need_an_order_refuse_stored_words(drawn, method):
     """Places of words would make plausible indices."""
     runs = drawn(method, np.zeros((40, 2)), np.arange(40.0))
     choice = {"distribution": "choice", "values": ["a", "b"], "weights": [0.5, 0.5]}
@@ -129,7 +124,7 @@ def test_methods_that_need_an_order_refuse_stored_words(drawn: Any, method: str)
         sensitivity.analysis(runs)
 
 
-def test_values_of_failed_runs_are_not_supplied_over_words(drawn: Any) -> None:
+def test_values_of_failed_runs_are_not_supplied_over_words(drawn):
     outputs = np.where(np.arange(100) == 7, np.nan, 1.0 * np.arange(100))
     runs = drawn("pawn", np.random.default_rng(1).random((100, 2)), outputs, failed_runs="impute")
     choice = {"distribution": "choice", "values": ["a", "b"], "weights": [0.5, 0.5]}

@@ -1,6 +1,6 @@
 """Samples drawn from distributions, and answered by closed forms in place of the solver."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -22,26 +22,26 @@ Answer = Callable[[Any], Any]
 UNIT = orthonormal(il.Uniform(0.0, 1.0))
 
 
-def ishigami(unit: Any) -> Any:
+def ishigami(unit):
     """Ishigami and Homma (1990), a = 7, b = 0.1, on the unit cube."""
     x = np.pi * (2 * unit - 1)
     return np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
 
 
 @pytest.fixture(scope="session")
-def drawn_runs() -> Callable[..., xr.Dataset]:
+def drawn_runs():
     """Build Saltelli's runs of three parameters; answers: functions of the unit cube.
 
     With these ranges, the unit cube is linear in what the polynomials take.
     """
 
     def build(
-        base_samples: int = 64,
-        seed: int = 0,
-        attrs: Mapping[str, Any] | None = None,
-        ranges: Mapping[str, Any] = RANGES,
-        **answers: Answer,
-    ) -> xr.Dataset:
+        base_samples=64,
+        seed=0,
+        attrs=None,
+        ranges=RANGES,
+        **answers,
+    ):
         problem = {"num_vars": 3, "names": list(ranges), "bounds": [[0, 1]] * 3}
         unit = sampler.sample(problem, base_samples, calc_second_order=True, seed=7)
         unit = np.clip(unit, 2.0**-31, 1 - 2.0**-31)

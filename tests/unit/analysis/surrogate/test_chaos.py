@@ -1,7 +1,6 @@
 """Polynomial chaos: its terms, their values, and its Sobol indices."""
 
 from itertools import product
-from typing import Any
 
 import numpy as np
 import pytest
@@ -20,12 +19,12 @@ from impactlab.analysis.surrogate.chaos import (
 from .conftest import UNIT
 
 
-def _norm(row: tuple[int, ...]) -> float:
+def _norm(row):
     return sum(part**0.7 for part in row) ** (1 / 0.7)
 
 
 @pytest.mark.parametrize(("parameters", "degree"), [(1, 5), (2, 7), (3, 6), (4, 5)])
-def test_a_set_holds_just_the_terms_of_small_norm(parameters: int, degree: int) -> None:
+def test_a_set_holds_just_the_terms_of_small_norm(parameters, degree):
     every = product(range(degree + 1), repeat=parameters)
     expected = {row for row in every if _norm(row) <= degree + 1e-9}
     found = [tuple(row) for row in hyperbolic(parameters, degree).tolist()]
@@ -34,14 +33,14 @@ def test_a_set_holds_just_the_terms_of_small_norm(parameters: int, degree: int) 
     assert not any(found[0])  # the constant
 
 
-def test_candidates_are_the_largest_set_that_is_allowed() -> None:
+def test_candidates_are_the_largest_set_that_is_allowed():
     sizes = [len(hyperbolic(3, degree)) for degree in range(6)]
     assert len(candidates(3, sizes[4], highest=20)) == sizes[4]
     assert len(candidates(3, sizes[4] - 1, highest=20)) == sizes[3]
     assert len(candidates(3, 10_000, highest=2)) == sizes[2]
 
 
-def test_terms_are_products_of_scipys_polynomials() -> None:
+def test_terms_are_products_of_scipys_polynomials():
     unit = np.random.default_rng(0).random((50, 3))
     degrees = np.array([[0, 0, 0], [4, 0, 1], [0, 12, 0], [1, 2, 3]])
     for row, values in zip(degrees, basis(unit, degrees, [UNIT] * unit.shape[1]), strict=True):
@@ -52,7 +51,7 @@ def test_terms_are_products_of_scipys_polynomials() -> None:
         np.testing.assert_allclose(values, np.prod(factors, axis=0), rtol=1e-11, atol=1e-12)
 
 
-def test_the_basis_is_orthonormal() -> None:
+def test_the_basis_is_orthonormal():
     nodes, weights = np.polynomial.legendre.leggauss(8)  # exact up to degree 15
     unit = np.array(list(product((nodes + 1) / 2, repeat=2)))
     weight = np.array([a * b for a, b in product(weights / 2, repeat=2)])
@@ -60,7 +59,7 @@ def test_the_basis_is_orthonormal() -> None:
     np.testing.assert_allclose(columns * weight @ columns.T, np.eye(len(columns)), atol=1e-12)
 
 
-def test_a_chaos_is_the_sum_of_its_terms() -> None:
+def test_a_chaos_is_the_sum_of_its_terms():
     unit = np.array([[0.0, 0.5], [0.25, 1.0]])
     chaos = Chaos(np.array([[0, 0], [1, 0], [0, 2]]), np.array([2.0, 3.0, 5.0]), (UNIT, UNIT))
     linear, quadratic = 2 * unit[:, 0] - 1, 1.5 * (2 * unit[:, 1] - 1) ** 2 - 0.5
@@ -71,15 +70,13 @@ def test_a_chaos_is_the_sum_of_its_terms() -> None:
 Z95 = 1.959964
 
 
-def _indices(
-    unit: Any, values: Any, groups: str, rmse: float = 0.0, missed: float = 0.0
-) -> dict[str, Any]:
+def _indices(unit, values, groups, rmse=0.0, missed=0.0):
     chaos = fit(unit, values, 0, [UNIT] * unit.shape[1])
     pull = influence(chaos, unit, values, np.arange(len(unit)), rmse)
     return indices(chaos, list(groups), pull, missed, 0.95)
 
 
-def test_two_parameters_and_their_product() -> None:
+def test_two_parameters_and_their_product():
     """x + y + x y on the unit square: 3/16 each, and 1/144 together."""
     unit = np.random.default_rng(0).random((200, 2))
     found = _indices(unit, unit[:, 0] + unit[:, 1] + unit.prod(axis=1), "xy")
@@ -89,7 +86,7 @@ def test_two_parameters_and_their_product() -> None:
     np.testing.assert_allclose(found["first_order_interval"], 0.0, atol=1e-10)
 
 
-def test_groups_take_their_parameters_together() -> None:
+def test_groups_take_their_parameters_together():
     unit = np.random.default_rng(0).random((200, 3))
     found = _indices(unit, unit[:, 0] + unit[:, 1] + unit[:, 0] * unit[:, 2], "aba")
     # f = const + 3/2 u + v + w/2 + u w, u, v, w with a variance of 1/12 each
@@ -98,7 +95,7 @@ def test_groups_take_their_parameters_together() -> None:
     np.testing.assert_allclose(found["total_order"], found["first_order"])
 
 
-def test_the_share_that_is_missed_widens_every_interval() -> None:
+def test_the_share_that_is_missed_widens_every_interval():
     unit = np.random.default_rng(0).random((200, 2))
     found = _indices(unit, unit[:, 0], "xy", missed=0.07)
     for half_width in (found["first_order_interval"], found["total_order_interval"]):
@@ -106,7 +103,7 @@ def test_the_share_that_is_missed_widens_every_interval() -> None:
 
 
 @pytest.mark.parametrize("copies", [1, 4])
-def test_intervals_tell_the_scatter_of_repeated_fits(copies: int) -> None:
+def test_intervals_tell_the_scatter_of_repeated_fits(copies):
     """Noise that whole blocks share: copies of a run bring no knowledge."""
     random, found = np.random.default_rng(1), []
     for _ in range(60):
@@ -127,7 +124,7 @@ def test_intervals_tell_the_scatter_of_repeated_fits(copies: int) -> None:
     assert 0.75 < stated / scatter < 1.33
 
 
-def test_the_error_on_runs_held_out_is_what_scatters() -> None:
+def test_the_error_on_runs_held_out_is_what_scatters():
     """Not the residual, which a fit of many terms makes small."""
     unit = np.random.default_rng(0).random((200, 2))
     values = np.abs(unit[:, 0] - 0.3) + unit[:, 1]
@@ -136,7 +133,7 @@ def test_the_error_on_runs_held_out_is_what_scatters() -> None:
     assert (one["first_order_interval"] > 0).all()
 
 
-def test_a_constant_has_no_indices() -> None:
+def test_a_constant_has_no_indices():
     unit = np.random.default_rng(0).random((50, 2))
     chaos = Chaos(np.zeros((1, 2), dtype=int), np.array([3.0]), (UNIT, UNIT))
     pull = influence(chaos, unit, unit[:, 0], np.arange(50), 0.0)

@@ -1,7 +1,6 @@
 """Samples as points of the unit cube, and fits: exact for polynomials, sparse, repeatable."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,11 +18,11 @@ from .conftest import UNIT
 Build = Callable[..., xr.Dataset]
 
 
-def first(unit: Any) -> Any:
+def first(unit):
     return unit[:, 0]
 
 
-def test_whole_blocks_of_saltelli_are_held_out(drawn_runs: Build) -> None:
+def test_whole_blocks_of_saltelli_are_held_out(drawn_runs):
     sample = Divided.of(drawn_runs(base_samples=64, peak_force=first))
     blocks = sample.part.reshape(64, 8)
     assert (blocks == blocks[:, :1]).all()
@@ -40,7 +39,7 @@ def test_whole_blocks_of_saltelli_are_held_out(drawn_runs: Build) -> None:
         ({"method": "pawn", "samples": 512}, 1),
     ],
 )
-def test_blocks_of_other_methods(drawn_runs: Build, attrs: Any, length: int) -> None:
+def test_blocks_of_other_methods(drawn_runs, attrs, length):
     sample = Divided.of(drawn_runs(base_samples=64, attrs=attrs, peak_force=first))
     parts = sample.part.reshape(-1, length)
     assert (parts == parts[:, :1]).all()
@@ -48,34 +47,34 @@ def test_blocks_of_other_methods(drawn_runs: Build, attrs: Any, length: int) -> 
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-def test_the_seed_of_the_study_chooses(drawn_runs: Build, seed: int) -> None:
-    def held_out(seed: int) -> Any:
+def test_the_seed_of_the_study_chooses(drawn_runs, seed):
+    def held_out(seed):
         return Divided.of(drawn_runs(seed=seed, peak_force=first)).part
 
     assert np.array_equal(held_out(seed), held_out(seed))
     assert not np.array_equal(held_out(seed), held_out(seed + 1))
 
 
-def test_of_many_held_out_runs_some_are_tested(drawn_runs: Build) -> None:
+def test_of_many_held_out_runs_some_are_tested(drawn_runs):
     sample = Divided.of(drawn_runs(base_samples=4096, peak_force=first))
     assert sample.tests.size == 4000 == np.unique(sample.tests).size
     assert (sample.part[sample.tests] == 0).all()
 
 
-def test_groups_stand_for_their_parameters(drawn_runs: Build) -> None:
+def test_groups_stand_for_their_parameters(drawn_runs):
     runs = drawn_runs(peak_force=first)
     assert Divided.of(runs).sample.factors == ("velocity", "beam_depth", "beam_yield_stress")
     grouped = Divided.of(runs.assign_attrs(groups=["impact", "beam", "beam"]))
     assert grouped.sample.factors == ("impact", "beam")
 
 
-def test_runs_that_are_no_whole_sample_are_refused(drawn_runs: Build) -> None:
+def test_runs_that_are_no_whole_sample_are_refused(drawn_runs):
     runs = drawn_runs(peak_force=first).isel(run=slice(0, 500))
     with pytest.raises(ValueError, match=r"'synthetic' has 500 runs, .* method sobol: solve"):
         Divided.of(runs)
 
 
-def test_what_counts_as_a_sample(drawn_runs: Build) -> None:
+def test_what_counts_as_a_sample(drawn_runs):
     runs = drawn_runs(peak_force=first)
     assert applies(runs)
     grid = xr.Dataset(coords={"velocity": [1.0, 2.0]}, attrs={"varied": ["velocity"]})
@@ -85,20 +84,20 @@ def test_what_counts_as_a_sample(drawn_runs: Build) -> None:
 
 
 @pytest.fixture
-def random() -> np.random.Generator:
+def random():
     return np.random.default_rng(3)
 
 
-def fitted(unit: Any, values: Any, seed: int) -> Any:
+def fitted(unit, values, seed):
     return fit(unit, values, seed, [UNIT] * unit.shape[1])
 
 
-def bent(unit: Any) -> Any:
+def bent(unit):
     return np.exp(unit[:, 0]) * np.maximum(unit[:, 1], 0.4) + 0.3 * unit[:, 2]
 
 
-def test_polynomials_are_met_exactly(random: np.random.Generator) -> None:
-    def polynomial(x: Any) -> Any:
+def test_polynomials_are_met_exactly(random):
+    def polynomial(x):
         return 2e5 * (x[:, 0] + x[:, 1] + x[:, 0] * x[:, 1] - 4 * x[:, 2] ** 3 + 7)
 
     unit, other = random.random((200, 3)), random.random((100, 3))
@@ -107,9 +106,7 @@ def test_polynomials_are_met_exactly(random: np.random.Generator) -> None:
     )
 
 
-def test_predictions_are_those_of_scikit_learn_on_the_same_terms(
-    random: np.random.Generator,
-) -> None:
+def test_predictions_are_those_of_scikit_learn_on_the_same_terms(random):
     unit, other = random.random((500, 3)), random.random((100, 3))
     chaos = fitted(unit, bent(unit), 0)
     columns, others = (
@@ -120,7 +117,7 @@ def test_predictions_are_those_of_scikit_learn_on_the_same_terms(
     np.testing.assert_allclose(chaos(other), model.predict(others), rtol=1e-10)
 
 
-def test_terms_that_do_not_help_are_left_out(random: np.random.Generator) -> None:
+def test_terms_that_do_not_help_are_left_out(random):
     unit = random.random((400, 3))
     noisy = unit[:, 0] + 0.05 * random.standard_normal(400)
     chaos = fitted(unit, noisy, 0)
@@ -128,7 +125,7 @@ def test_terms_that_do_not_help_are_left_out(random: np.random.Generator) -> Non
     assert [1, 0, 0] in chaos.degrees.tolist()
 
 
-def test_few_levels_bound_the_degree(random: np.random.Generator) -> None:
+def test_few_levels_bound_the_degree(random):
     """Four levels, as of Morris: a fourth degree would be one of the lower ones again."""
     unit = random.integers(0, 4, (300, 2)) / 3
     chaos = fitted(unit, np.sin(5 * unit[:, 0]) + unit[:, 1], 0)
@@ -136,7 +133,7 @@ def test_few_levels_bound_the_degree(random: np.random.Generator) -> None:
     np.testing.assert_allclose(chaos(unit), np.sin(5 * unit[:, 0]) + unit[:, 1], atol=1e-9)
 
 
-def test_terms_that_the_runs_cannot_tell_apart_do_no_harm(random: np.random.Generator) -> None:
+def test_terms_that_the_runs_cannot_tell_apart_do_no_harm(random):
     """On the short curves of extended FAST many polynomials are each other's aliases."""
     problem = {"num_vars": 3, "names": list("xyz"), "bounds": [[0, 1]] * 3}
     unit, other = fast_sampler.sample(problem, 65, seed=2)[:130], random.random((200, 3))
@@ -145,14 +142,14 @@ def test_terms_that_the_runs_cannot_tell_apart_do_no_harm(random: np.random.Gene
     assert np.abs(chaos(other) - exact).max() < 0.05
 
 
-def test_a_small_change_of_a_large_value_is_seen(random: np.random.Generator) -> None:
+def test_a_small_change_of_a_large_value_is_seen(random):
     unit, other = random.random((200, 2)), random.random((50, 2))
     found = fitted(unit, 1e6 + bent(np.c_[unit, unit[:, :1]]), 0)(other) - 1e6
     assert np.abs(found - bent(np.c_[other, other[:, :1]])).max() < 0.1
 
 
 @pytest.mark.parametrize("seed", [0, 5])
-def test_of_many_runs_the_seed_chooses(seed: int) -> None:
+def test_of_many_runs_the_seed_chooses(seed):
     rows = drawn(3 * MOST_RUNS, seed)
     assert rows.size == MOST_RUNS == np.unique(rows).size
     assert np.array_equal(rows, drawn(3 * MOST_RUNS, seed))
@@ -160,7 +157,7 @@ def test_of_many_runs_the_seed_chooses(seed: int) -> None:
     assert np.array_equal(drawn(10, seed), np.arange(10))
 
 
-def test_the_same_runs_give_the_same_bits(random: np.random.Generator) -> None:
+def test_the_same_runs_give_the_same_bits(random):
     unit = random.random((300, 3))
     one, other = fitted(unit, bent(unit), 1), fitted(unit, bent(unit), 1)
     assert one.coefficients.tobytes() == other.coefficients.tobytes()
@@ -168,9 +165,7 @@ def test_the_same_runs_give_the_same_bits(random: np.random.Generator) -> None:
 
 
 @pytest.mark.parametrize("unit_of_response", [1e-9, 1e9])
-def test_the_unit_of_the_response_does_not_matter(
-    random: np.random.Generator, unit_of_response: float
-) -> None:
+def test_the_unit_of_the_response_does_not_matter(random, unit_of_response):
     unit = random.random((300, 3))
     one, other = fitted(unit, bent(unit), 1), fitted(unit, unit_of_response * bent(unit), 1)
     assert np.array_equal(one.degrees, other.degrees)
@@ -178,7 +173,7 @@ def test_the_unit_of_the_response_does_not_matter(
 
 
 @pytest.mark.parametrize("threads", [2, 4])
-def test_processors_do_not_matter(random: np.random.Generator, threads: int) -> None:
+def test_processors_do_not_matter(random, threads):
     unit = random.random((3000, 3))
     with threadpool_limits(limits=threads):
         found = fitted(unit, bent(unit), 1).coefficients
@@ -186,7 +181,7 @@ def test_processors_do_not_matter(random: np.random.Generator, threads: int) -> 
         assert fitted(unit, bent(unit), 1).coefficients.tobytes() == found.tobytes()
 
 
-def test_too_few_runs_are_refused(random: np.random.Generator) -> None:
+def test_too_few_runs_are_refused(random):
     unit = random.random((15, 3))
     with pytest.raises(ValueError, match=r"15 runs are too few .* 3 parameters: solve 16 or more"):
         fitted(unit, unit[:, 0], 0)

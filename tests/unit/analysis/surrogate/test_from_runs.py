@@ -1,7 +1,6 @@
 """Surrogates of whole samples: Ishigami's indices, and what must not pass in silence."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,23 +15,23 @@ from .conftest import ishigami
 Build = Callable[..., xr.Dataset]
 
 
-def smooth(unit: Any) -> Any:
+def smooth(unit):
     return 1e4 * np.exp(unit[:, 0]) * (1 + unit[:, 1])
 
 
 @pytest.fixture
-def ishigami_found(drawn_runs: Build) -> xr.Dataset:
+def ishigami_found(drawn_runs):
     return analysis(drawn_runs(base_samples=256, peak_force=ishigami))
 
 
-def _ishigami_indices() -> tuple[Any, Any]:
+def _ishigami_indices():
     v1 = 0.5 * (1 + 0.1 * np.pi**4 / 5) ** 2
     v2, v13 = 49 / 8, 0.01 * np.pi**8 * (1 / 18 - 1 / 50)
     whole = v1 + v2 + v13
     return np.array([v1, v2, 0]) / whole, np.array([v1 + v13, v2, v13]) / whole
 
 
-def test_ishigami_within_the_stated_intervals(ishigami_found: xr.Dataset) -> None:
+def test_ishigami_within_the_stated_intervals(ishigami_found):
     for name, expected in zip(("first_order", "total_order"), _ishigami_indices(), strict=True):
         found = ishigami_found[f"surrogate_{name}"].values[0]
         half_width = ishigami_found[f"surrogate_{name}_interval"].values[0]
@@ -41,7 +40,7 @@ def test_ishigami_within_the_stated_intervals(ishigami_found: xr.Dataset) -> Non
     assert ishigami_found["surrogate_q2"].values[0] > 0.999
 
 
-def test_errors_are_those_of_the_runs_held_out(drawn_runs: Build) -> None:
+def test_errors_are_those_of_the_runs_held_out(drawn_runs):
     runs = drawn_runs(peak_force=ishigami)
     found = analysis(runs)
     computed = runs["peak_force"].sel(run=found["held_out"].values).values
@@ -53,12 +52,12 @@ def test_errors_are_those_of_the_runs_held_out(drawn_runs: Build) -> None:
     assert found["surrogate_runs"].values[0] == found.sizes["held_out"] == runs.sizes["run"]
 
 
-def test_noise_lowers_the_predictivity_and_widens_the_intervals(drawn_runs: Build) -> None:
+def test_noise_lowers_the_predictivity_and_widens_the_intervals(drawn_runs):
     """Noise of a share s of the variance: no model can predict more than 1 - s."""
     noise = np.random.default_rng(0).standard_normal(64 * 8)
 
-    def with_noise(share: float) -> Callable[[Any], Any]:
-        def answer(unit: Any) -> Any:
+    def with_noise(share):
+        def answer(unit):
             clean = smooth(unit)
             return clean + np.sqrt(share / (1 - share)) * clean.std() * noise
 
@@ -74,9 +73,7 @@ def test_noise_lowers_the_predictivity_and_widens_the_intervals(drawn_runs: Buil
     assert widths[0] < widths[1] < widths[2]
 
 
-def test_responses_that_need_care_say_so(
-    drawn_runs: Build, verdicts_of: Callable[..., Any]
-) -> None:
+def test_responses_that_need_care_say_so(drawn_runs, verdicts_of):
     noise = np.random.default_rng(0).standard_normal(64 * 8)
     runs = drawn_runs(
         peak_force=smooth,
@@ -109,7 +106,7 @@ def test_responses_that_need_care_say_so(
         assert found_at.tolist() == given.tolist()
 
 
-def test_a_failed_run_is_fitted_around_not_filled(drawn_runs: Build) -> None:
+def test_a_failed_run_is_fitted_around_not_filled(drawn_runs):
     whole, broken = drawn_runs(peak_force=smooth), drawn_runs(peak_force=smooth)
     broken["peak_force"][3::40] = np.nan
     exact, found = analysis(whole), analysis(broken)
@@ -117,13 +114,13 @@ def test_a_failed_run_is_fitted_around_not_filled(drawn_runs: Build) -> None:
     np.testing.assert_allclose(found["surrogate_held_out"], exact["surrogate_held_out"], rtol=1e-5)
 
 
-def test_too_few_runs_give_none(drawn_runs: Build, verdicts_of: Callable[..., Any]) -> None:
+def test_too_few_runs_give_none(drawn_runs, verdicts_of):
     found = analysis(drawn_runs(base_samples=2, peak_force=smooth))
     assert verdicts_of(found["surrogate_verdict"]) == ["too_few_runs"]
     assert np.isnan(found["surrogate_first_order"]).all()
 
 
-def test_the_order_of_runs_and_responses_does_not_matter(drawn_runs: Build) -> None:
+def test_the_order_of_runs_and_responses_does_not_matter(drawn_runs):
     runs = drawn_runs(base_samples=64, peak_force=smooth, impulse=ishigami)
     shuffled = runs.isel(run=np.random.default_rng(0).permutation(runs.sizes["run"]))
     shuffled = shuffled.assign_attrs(responses=["impulse", "peak_force"])
@@ -136,8 +133,8 @@ def test_the_order_of_runs_and_responses_does_not_matter(drawn_runs: Build) -> N
 
 
 @pytest.mark.parametrize("seed", [0, 3])
-def test_the_seed_repeats_bit_for_bit(drawn_runs: Build, seed: int) -> None:
-    def found(seed: int) -> bytes:
+def test_the_seed_repeats_bit_for_bit(drawn_runs, seed):
+    def found(seed):
         runs = drawn_runs(base_samples=64, seed=seed, peak_force=ishigami)
         return analysis(runs)["surrogate_held_out"].values.tobytes()
 
@@ -145,7 +142,7 @@ def test_the_seed_repeats_bit_for_bit(drawn_runs: Build, seed: int) -> None:
     assert found(seed) != found(seed + 1)
 
 
-def test_groups_are_what_indices_are_given_for(drawn_runs: Build) -> None:
+def test_groups_are_what_indices_are_given_for(drawn_runs):
     runs = drawn_runs(peak_force=ishigami, attrs={"groups": ["odd", "even", "odd"]})
     found = analysis(runs)
     assert found["parameter"].values.tolist() == ["odd", "even"]
@@ -155,7 +152,7 @@ def test_groups_are_what_indices_are_given_for(drawn_runs: Build) -> None:
     assert found["surrogate_input"].size == 3
 
 
-def test_it_is_one_of_the_analyses(drawn_runs: Build) -> None:
+def test_it_is_one_of_the_analyses(drawn_runs):
     attrs = {"second_order": 1, "replicates": 8}
     runs = drawn_runs(base_samples=64, peak_force=smooth, attrs=attrs)
     assert applies(runs)

@@ -34,7 +34,7 @@ KINDS: list[dict[str, Any]] = [
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind["distribution"])
-def test_polynomials_are_orthonormal_under_their_distribution(kind: dict[str, Any]) -> None:
+def test_polynomials_are_orthonormal_under_their_distribution(kind):
     """Integrated over probabilities, which the recurrence never sees."""
     nodes, weights = np.polynomial.legendre.leggauss(60)
     edges = np.array([*10.0 ** np.arange(-15, 0), *np.linspace(0.15, 0.85, 21)])
@@ -50,7 +50,7 @@ def test_polynomials_are_orthonormal_under_their_distribution(kind: dict[str, An
 
 
 @pytest.mark.parametrize("kind", KINDS[3:7], ids=lambda kind: kind["distribution"])
-def test_uniform_is_legendre_and_normal_is_hermite(kind: dict[str, Any]) -> None:
+def test_uniform_is_legendre_and_normal_is_hermite(kind):
     z, degrees = np.linspace(-1.7, 1.7, 9), np.arange(21)
     if "uniform" in kind["distribution"]:
         expected = np.sqrt(2 * degrees + 1) * legvander(z / np.sqrt(3), 20)
@@ -61,7 +61,7 @@ def test_uniform_is_legendre_and_normal_is_hermite(kind: dict[str, Any]) -> None
     )
 
 
-def _stress(kind: Any, seed: int, runs: int = 300) -> tuple[Any, Any, Any, Any]:
+def _stress(kind, seed, runs=300):
     kinds = [kind, {"distribution": "uniform", "low": 0.0, "high": 1.0}]
     unit = scipy.stats.qmc.LatinHypercube(2, rng=np.random.default_rng(seed)).random(runs)
     inputs = np.column_stack(
@@ -75,7 +75,7 @@ def _stress(kind: Any, seed: int, runs: int = 300) -> tuple[Any, Any, Any, Any]:
     )
 
 
-def test_a_power_law_is_straight_at_the_bounds_of_a_truncated_normal() -> None:
+def test_a_power_law_is_straight_at_the_bounds_of_a_truncated_normal():
     """In probabilities the same runs gave errors of 2 % of the response there."""
     _, inputs, polynomials, response = _stress(YIELD, 0)
     chaos = fit(inputs, response(inputs), 0, polynomials)
@@ -83,7 +83,7 @@ def test_a_power_law_is_straight_at_the_bounds_of_a_truncated_normal() -> None:
     np.testing.assert_allclose(chaos(bounds), response(bounds), rtol=1e-6)
 
 
-def test_indices_are_exact_under_the_distributions() -> None:
+def test_indices_are_exact_under_the_distributions():
     """The variances of the parts of a sum are known by quadrature."""
     _, inputs, polynomials, response = _stress(YIELD, 1)
     chaos = fit(inputs, response(inputs), 0, polynomials)

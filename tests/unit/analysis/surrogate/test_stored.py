@@ -2,8 +2,6 @@
 
 import sys
 from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +10,6 @@ import xarray as xr
 from impactlab.analysis.surrogate import analysis, load_surrogate, packed
 from impactlab.analysis.surrogate.chaos import Chaos
 from impactlab.analysis.surrogate.polynomials import orthonormal
-from impactlab.analysis.surrogate.stored import Surrogate
 from impactlab.files import write_netcdf
 from impactlab.methods.distributions import distribution_of
 from impactlab.report.console import print_predictions
@@ -22,24 +19,22 @@ from .conftest import RANGES, ishigami
 Build = Callable[..., xr.Dataset]
 
 
-def force(unit: Any) -> Any:
+def force(unit):
     return 1e4 * np.exp(unit[:, 0]) * (1 + unit[:, 1]) + 10 * unit[:, 2]
 
 
 @pytest.fixture(scope="module")
-def runs(drawn_runs: Build) -> xr.Dataset:
+def runs(drawn_runs):
     return drawn_runs(peak_force=force, impulse=ishigami, restitution=lambda u: 0 * u[:, 0])
 
 
 @pytest.fixture(scope="module")
-def found(runs: xr.Dataset) -> xr.Dataset:
+def found(runs):
     return analysis(runs)
 
 
 @pytest.fixture
-def loaded(
-    runs: xr.Dataset, found: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> Surrogate:
+def loaded(runs, found, tmp_path, monkeypatch):
     """Read where scikit-learn is not installed."""
     dataset = packed(runs, found)
     assert dataset is not None
@@ -51,9 +46,7 @@ def loaded(
 POINT = {"velocity": 9.0, "beam_depth": 0.0271, "beam_yield_stress": 350e6}
 
 
-def test_predictions_of_the_file_are_those_of_the_fit(
-    runs: xr.Dataset, found: xr.Dataset, loaded: Surrogate
-) -> None:
+def test_predictions_of_the_file_are_those_of_the_fit(runs, found, loaded):
     rows = slice(0, 50)
     predicted = loaded.predict(**{name: runs[name].values[rows] for name in POINT})
     inputs = np.column_stack([runs[name].values[rows] for name in POINT])
@@ -66,7 +59,7 @@ def test_predictions_of_the_file_are_those_of_the_fit(
     assert error.max() < 1e-4
 
 
-def test_a_prediction_carries_unit_and_error(loaded: Surrogate) -> None:
+def test_a_prediction_carries_unit_and_error(loaded):
     found = loaded.predict(**POINT)
     attrs = found["peak_force"].attrs
     assert found["peak_force"].dims == ()
@@ -76,9 +69,7 @@ def test_a_prediction_carries_unit_and_error(loaded: Surrogate) -> None:
     assert found["velocity"].item() == 9.0
 
 
-def test_a_prediction_smaller_than_its_error_is_not_usable(
-    loaded: Surrogate, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_prediction_smaller_than_its_error_is_not_usable(loaded, capsys, monkeypatch):
     """Though the surrogate itself, over its whole range, is."""
     monkeypatch.setenv("COLUMNS", "140")
     at = int(np.flatnonzero(loaded.dataset["response"] == "peak_force")[0])
@@ -93,8 +84,8 @@ def test_a_prediction_smaller_than_its_error_is_not_usable(
 
 
 def test_the_error_grows_outwards_and_beyond_the_runs_it_is_extrapolated(
-    loaded: Surrogate, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+    loaded, capsys, monkeypatch
+):
     monkeypatch.setenv("COLUMNS", "200")
     low, high = (loaded.dataset[name].to_series() for name in ("lowest", "highest"))
     places = [POINT, POINT | {"velocity": 15.0}, dict(high)]
@@ -108,8 +99,8 @@ def test_the_error_grows_outwards_and_beyond_the_runs_it_is_extrapolated(
 
 
 def test_a_file_with_the_polynomials_of_an_earlier_version_is_refused(
-    runs: xr.Dataset, found: xr.Dataset, loaded: Surrogate, tmp_path: Path
-) -> None:
+    runs, found, loaded, tmp_path
+):
     old = loaded.dataset.drop_attrs(deep=False).assign_attrs(study="synthetic")
     write_netcdf(old, tmp_path / "old.nc", "surrogate")
     with pytest.raises(ValueError, match=r"old.nc: its surrogates .* earlier version.*analyse"):
@@ -118,13 +109,13 @@ def test_a_file_with_the_polynomials_of_an_earlier_version_is_refused(
         packed(runs, found.drop_vars("surrogate_error"))
 
 
-def test_no_surrogate_no_number(loaded: Surrogate) -> None:
+def test_no_surrogate_no_number(loaded):
     found = loaded.predict(**POINT)["restitution"]
     assert np.isnan(found)
     assert found.attrs["verdict"] == "constant"
 
 
-def test_values_are_broadcast(loaded: Surrogate) -> None:
+def test_values_are_broadcast(loaded):
     speeds = xr.DataArray([6.0, 9.0, 12.0], dims="velocity")
     depths = xr.DataArray([0.0265, 0.0271], dims="depth")
     found = loaded.predict(velocity=speeds, beam_depth=depths, beam_yield_stress=350e6)
@@ -136,7 +127,7 @@ def test_values_are_broadcast(loaded: Surrogate) -> None:
     assert listed[1].item() == pytest.approx(one.item(), rel=1e-12)
 
 
-def test_many_points_are_those_one_by_one(loaded: Surrogate) -> None:
+def test_many_points_are_those_one_by_one(loaded):
     speeds = np.linspace(5.0, 15.0, 10_000)
     found = loaded.predict(**POINT | {"velocity": speeds})["peak_force"].values
     for at in (0, 4095, 4096, 9999):
@@ -157,17 +148,17 @@ def test_many_points_are_those_one_by_one(loaded: Surrogate) -> None:
         ({"velocity": [[9.0]]}, "velocity: has 2 dimensions"),
     ],
 )
-def test_what_it_does_not_know_is_refused(loaded: Surrogate, change: Any, words: str) -> None:
+def test_what_it_does_not_know_is_refused(loaded, change, words):
     with pytest.raises(ValueError, match=words):
         loaded.predict(**POINT | change)
 
 
-def test_a_missing_parameter_is_named(loaded: Surrogate) -> None:
+def test_a_missing_parameter_is_named(loaded):
     with pytest.raises(ValueError, match=r"^beam_depth, beam_yield_stress: no value is given"):
         loaded.predict(velocity=9.0)
 
 
-def test_ranges_are_bounds_or_extreme_draws(drawn_runs: Build) -> None:
+def test_ranges_are_bounds_or_extreme_draws(drawn_runs):
     """A normal has no bounds: beyond its draws nothing is known."""
     normal = {"distribution": "normal", "mean": 345e6, "standard_deviation": 25e6}
     runs = drawn_runs(ranges=RANGES | {"beam_yield_stress": normal}, peak_force=force)
@@ -180,13 +171,13 @@ def test_ranges_are_bounds_or_extreme_draws(drawn_runs: Build) -> None:
     assert dataset["lowest"].sel(parameter="velocity").item() == 5.0
 
 
-def test_units_of_parameters(loaded: Surrogate) -> None:
+def test_units_of_parameters(loaded):
     assert loaded.units("beam_yield_stress") == "Pa"
     with pytest.raises(ValueError, match="gravity: was not varied"):
         loaded.units("gravity")
 
 
-def test_files_that_are_none(tmp_path: Path) -> None:
+def test_files_that_are_none(tmp_path):
     xr.Dataset({"degree": 1.0}).to_netcdf(tmp_path / "other.nc")
     with pytest.raises(ValueError, match=r"other.nc: has no checksums.*impactlab analyse"):
         load_surrogate(tmp_path / "other.nc")
@@ -195,5 +186,5 @@ def test_files_that_are_none(tmp_path: Path) -> None:
         load_surrogate(tmp_path / "text.nc")
 
 
-def test_an_analysis_without_surrogates_keeps_none(runs: xr.Dataset) -> None:
+def test_an_analysis_without_surrogates_keeps_none(runs):
     assert packed(runs, xr.Dataset()) is None

@@ -1,7 +1,5 @@
 """Errors that grow outwards, and the interval of Q²: measured on functions that are known."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 import scipy.stats
@@ -21,12 +19,12 @@ NORMAL = {
 KINDS = [NORMAL, NORMAL, {"distribution": "uniform", "low": -1.0, "high": 1.0}]
 
 
-def response(x: Any) -> Any:
+def response(x):
     return np.exp(x[:, 0]) * (1 + 0.3 * x[:, 1]) + np.arctan(2 * x[:, 2])
 
 
-def test_stated_errors_hold_at_one_bound_and_in_corners() -> None:
-    rng, inside = np.random.default_rng(0), {"bound": [], "corner": []}  # type: ignore[var-annotated]
+def test_stated_errors_hold_at_one_bound_and_in_corners():
+    rng, inside = np.random.default_rng(0), {"bound": [], "corner": []}
     polynomials = tuple(orthonormal(distribution_of(kind)) for kind in KINDS)
     for _ in range(6):
         unit = scipy.stats.qmc.LatinHypercube(3, rng=rng).random(80)
@@ -53,7 +51,7 @@ def test_stated_errors_hold_at_one_bound_and_in_corners() -> None:
     )
 
 
-def test_stated_errors_hold_in_the_middle() -> None:
+def test_stated_errors_hold_in_the_middle():
     """The error of the response is the same wherever the terms of the chaos are small."""
     rng, inside = np.random.default_rng(0), []
     for _ in range(200):
@@ -64,7 +62,7 @@ def test_stated_errors_hold_in_the_middle() -> None:
 
 
 @pytest.mark.parametrize("blocks", [20, 100])
-def test_the_lower_end_of_the_predictivity_covers(blocks: int) -> None:
+def test_the_lower_end_of_the_predictivity_covers(blocks):
     """Blocks of four near-copies whose errors take a share of 0.1 of the variance."""
     rng, below = np.random.default_rng(blocks), []
     block = np.repeat(np.arange(blocks), 4)
@@ -76,7 +74,7 @@ def test_the_lower_end_of_the_predictivity_covers(blocks: int) -> None:
     assert np.mean(below) > 0.95
 
 
-def test_few_blocks_that_show_no_error_prove_little() -> None:
+def test_few_blocks_that_show_no_error_prove_little():
     values = np.random.default_rng(0).normal(size=20)
     assert predictivity(np.zeros(20), values, np.arange(20), 20) == (1.0, 0.95)
     assert predictivity(np.zeros(20), np.ones(20), np.arange(20), 20) == (-np.inf, -np.inf)

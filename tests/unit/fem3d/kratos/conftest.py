@@ -2,15 +2,15 @@
 
 import pytest
 
-from impactlab.fem3d.solver import Mesh, quarter_mesh
-from impactlab.model.impact import Impact, paper_impact
+from impactlab.fem3d.solver import quarter_mesh
+from impactlab.model.impact import paper_impact
 
 
 @pytest.fixture(scope="package")
-def impact() -> Impact:
+def impact():
     return paper_impact(velocity=0.99)
 
 
 @pytest.fixture(scope="package")
-def mesh(impact: Impact) -> Mesh:
+def mesh(impact):
     return quarter_mesh(impact, element_size=1e-3, ratio=2.0, coarsest=20e-3)

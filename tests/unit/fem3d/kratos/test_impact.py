@@ -4,12 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from impactlab.fem3d import kratos
 from impactlab.fem3d import solver as solid
-from impactlab.fem3d.solver import Mesh
-from impactlab.model.impact import Impact
 
 pytestmark = pytest.mark.kratos
 
@@ -17,12 +14,12 @@ DURATION = 2.8e-4
 
 
 @pytest.fixture(scope="module")
-def theirs(mesh: Mesh, impact: Impact) -> xr.Dataset:
+def theirs(mesh, impact):
     return kratos.solve_on(mesh, impact, duration=DURATION)
 
 
 @pytest.fixture(scope="module")
-def ours(mesh: Mesh, impact: Impact) -> xr.Dataset:
+def ours(mesh, impact):
     """With a contact of pairs of nodes: where nodes match, Kratos' dual multipliers make it one."""
     flat = replace(mesh, bulge=np.zeros_like(mesh.bulge))
     with pytest.MonkeyPatch.context() as patched:
@@ -30,20 +27,20 @@ def ours(mesh: Mesh, impact: Impact) -> xr.Dataset:
         return solid.solve_on(flat, impact, duration=1.02 * DURATION)
 
 
-def test_forces_agree(ours: xr.Dataset, theirs: xr.Dataset) -> None:
+def test_forces_agree(ours, theirs):
     """The rest comes from the penalty: pressure over 1e6 N/mm3 is 2 % of the indentation."""
     assert "stopped" not in theirs.attrs
     assert theirs.peak_force.item() == pytest.approx(ours.peak_force.item(), rel=0.025)
     assert theirs.contact_duration.item() == pytest.approx(ours.contact_duration.item(), rel=0.04)
 
 
-def test_deflections_agree(ours: xr.Dataset, theirs: xr.Dataset) -> None:
+def test_deflections_agree(ours, theirs):
     beneath = ours.midspan_deflection.interp(time=theirs.time)
     end = beneath[-1].item()
     assert abs(theirs.midspan_deflection - beneath).max().item() < 0.03 * end
 
 
-def test_dents_agree(ours: xr.Dataset, theirs: xr.Dataset) -> None:
+def test_dents_agree(ours, theirs):
     """PEEQ as far as an element as large as half the contact allows."""
     deepest = ours.maximum_indentation.item()
     assert theirs.maximum_indentation.item() == pytest.approx(deepest, rel=0.04)
@@ -53,7 +50,7 @@ def test_dents_agree(ours: xr.Dataset, theirs: xr.Dataset) -> None:
     assert theirs.peak_plastic_strain.item() == pytest.approx(strain, rel=0.25)
 
 
-def test_the_sphere_loses_what_the_force_takes(theirs: xr.Dataset, impact: Impact) -> None:
+def test_the_sphere_loses_what_the_force_takes(theirs, impact):
     """Kratos' contact conditions against its velocities: N s."""
     after = theirs.sphere_displacement[-3:]
     left = (after[-1] - after[0]).item() / (after.time[-1] - after.time[0]).item()
@@ -62,7 +59,7 @@ def test_the_sphere_loses_what_the_force_takes(theirs: xr.Dataset, impact: Impac
     assert pushed == pytest.approx(impact.sphere.total_mass * (fallen - left), rel=0.003)
 
 
-def test_a_contact_that_leaves_the_patch_is_told(impact: Impact) -> None:
+def test_a_contact_that_leaves_the_patch_is_told(impact):
     small = solid.quarter_mesh(impact, element_size=0.4e-3, patch=0.8e-3, ratio=2.0, coarsest=20e-3)
     with pytest.raises(solid.PatchTooSmallError, match=r"above 0\.0008 m"):
         kratos.solve_on(small, impact, duration=8e-5)

@@ -1,7 +1,5 @@
 """Descriptions of study files for a workflow: what a study is, not which words its file has."""
 
-from pathlib import Path
-
 import pytest
 
 from impactlab.study.schema.readers import describe
@@ -62,7 +60,7 @@ EXPECTED = {
 
 
 @pytest.mark.parametrize(("text", "traits"), EXPECTED.values(), ids=EXPECTED.keys())
-def test_traits_are_those_of_the_study(tmp_path: Path, text: str, traits: list[str]) -> None:
+def test_traits_are_those_of_the_study(tmp_path, text, traits):
     file = tmp_path / "some.yaml"
     file.write_text(text)
     found = describe(file)
@@ -72,7 +70,7 @@ def test_traits_are_those_of_the_study(tmp_path: Path, text: str, traits: list[s
     assert found["title"] == text.split("title: ")[1].splitlines()[0].partition("  #")[0]
 
 
-def test_a_wrong_file_has_no_traits_and_says_why(tmp_path: Path) -> None:
+def test_a_wrong_file_has_no_traits_and_says_why(tmp_path):
     file = tmp_path / "wrong.yaml"
     file.write_text(GRID.replace("nodes: 21", "nodes: many"))
     found = describe(file)
