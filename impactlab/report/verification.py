@@ -13,8 +13,7 @@ from impactlab.figures.draw import OVERVIEW
 from impactlab.figures.labels import Display, display
 from impactlab.report.answer import entries
 from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
-from impactlab.verification.comparisons import Comparison
-from impactlab.verification.finding import Outcome, gravest_first
+from impactlab.verification.finding import Comparison, Outcome, gravest_first
 from impactlab.verification.outcomes import unpacked
 
 _SHORT = 12  # longest table of passed comparisons that is not folded

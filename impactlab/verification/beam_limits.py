@@ -11,8 +11,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, paper_impact
 from impactlab.simulate import run_dataset
 from impactlab.verification.cases import elastic, slimmer
-from impactlab.verification.comparisons import Comparisons, rms_error
-from impactlab.verification.finding import Curve, Finding, Panel, check
+from impactlab.verification.finding import Comparisons, Curve, Finding, Panel, check, rms_error
 from impactlab.verification.solutions import infinite_beam as closed
 from impactlab.verification.solutions import modal
 

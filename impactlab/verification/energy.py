@@ -17,8 +17,7 @@ from impactlab.solver import RULES
 from impactlab.types import Floats
 from impactlab.variables import WARNINGS
 from impactlab.verification.cases import discretised
-from impactlab.verification.comparisons import Comparison, Comparisons
-from impactlab.verification.finding import Curve, Finding, Panel, check
+from impactlab.verification.finding import Comparisons, Curve, Finding, Panel, check
 from impactlab.verification.solutions import quadrature
 from impactlab.verification.solutions.beam_modes import modes_left_out, modes_on_nodes
 from impactlab.verification.solutions.contact_laws import LAWS
@@ -148,7 +147,7 @@ def balances() -> Finding:
 
     Dissipations are never negative but for rounding, unless the contact law itself creates energy.
     """
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     curves: list[Curve] = []
     every: list[Audit] = []
     for scheme, number in _DRAWN.items():
@@ -157,7 +156,7 @@ def balances() -> Finding:
             values = _drawn(random, scheme)
             impact, grid = with_values(paper_impact(), Discretisation(), values)
             audits.append(audit(impact, grid, float(random.uniform(1e-3, 5e-3))))
-        comparisons += _compare(scheme, audits)
+        _compare(comparisons, scheme, audits)
         rank = np.arange(1.0, number + 1.0)
         for label, errors in (
             ("energy", [case.energy for case in audits]),
@@ -168,16 +167,17 @@ def balances() -> Finding:
         every += audits
     axes = ("cases, the best first", "1"), ("share of what is brought", "1")
     excess = Panel("In excess at the end, case by case", *axes, curves, log=True)
-    return Finding([*comparisons, *_created(every)], [excess, _loop_panel(every)])
+    _compare_created(comparisons, every)
+    return Finding(comparisons, [excess, _loop_panel(every)])
 
 
-def _compare(scheme: str, audits: list[Audit]) -> list[Comparison]:
+def _compare(comparisons: Comparisons, scheme: str, audits: list[Audit]) -> None:
+    """Add the worst error of each balance, and the least dissipations."""
     contact, plastic = [], []
     for case in audits:
         lost = case.run.contact_dissipation.item() if case.ended else case.contact
         contact.append((lost - case.contact) / case.brought)
         plastic.append((case.run.plastic_dissipation.item() - case.plastic) / case.brought)
-    comparisons: list[Comparison] = []
     for quantity, errors, tolerance in (
         ("energy in excess, the beam elastic", [a.energy for a in audits if not a.plastic], 1e-9),
         ("energy in excess, the beam yielding", [a.energy for a in audits if a.plastic], 2e-3),
@@ -187,7 +187,7 @@ def _compare(scheme: str, audits: list[Audit]) -> list[Comparison]:
     ):
         where = f"{scheme}: worst of {len(errors)} drawn cases, over what is brought"
         worst = float(np.max(np.abs(errors)))
-        comparisons += Comparisons(where).absolute(quantity, "1", worst, 0.0, tolerance)
+        comparisons.at(where).absolute(quantity, "1", worst, 0.0, tolerance)
     for name, cases in (
         ("plastic_dissipation", audits),
         ("contact_dissipation", [case for case in audits if not case.marked]),
@@ -195,8 +195,7 @@ def _compare(scheme: str, audits: list[Audit]) -> list[Comparison]:
         least = float(np.nanmin([case.run[name].item() / case.brought for case in cases]))
         where = f"{scheme}: least of {len(cases)} cases, over what is brought"
         label = name.replace("_", " ")
-        comparisons += Comparisons(where).absolute(label, "1", min(least, 0.0), 0.0, 1e-9)
-    return comparisons
+        comparisons.at(where).absolute(label, "1", min(least, 0.0), 0.0, 1e-9)
 
 
 def _drawn(random: np.random.Generator, scheme: str) -> dict[str, Value]:
@@ -227,7 +226,7 @@ def _drawn(random: np.random.Generator, scheme: str) -> dict[str, Value]:
     }
 
 
-def _created(audits: list[Audit]) -> list[Comparison]:
+def _compare_created(comparisons: Comparisons, audits: list[Audit]) -> None:
     """Compare the marked runs with those in which Stronge's loop gives back more than it took."""
     marked, expected = [], []
     for case in audits:
@@ -238,9 +237,9 @@ def _created(audits: list[Audit]) -> list[Comparison]:
             expected.append(yields and law.released_work(deepest) > law.loading_work(deepest))
     where = "runs marked; runs whose largest indentation says so by the law's closed form"
     wrong = float(np.sum(np.array(marked) != np.array(expected)))
-    label, wrongly = "contact law created energy", Comparisons("runs marked wrongly")
-    all_runs = Comparisons(where).absolute(label, "1", sum(marked), sum(expected), 0.0)
-    return [*all_runs, *wrongly.absolute(label, "1", wrong, 0.0, 0.0)]
+    label = "contact law created energy"
+    comparisons.at(where).absolute(label, "1", sum(marked), sum(expected), 0.0)
+    comparisons.at("runs marked wrongly").absolute(label, "1", wrong, 0.0, 0.0)
 
 
 def _loop_panel(audits: list[Audit]) -> Panel:

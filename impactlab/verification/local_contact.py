@@ -18,8 +18,7 @@ from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import run_dataset
 from impactlab.types import Floats
 from impactlab.verification.cases import elastic
-from impactlab.verification.comparisons import Comparison, Comparisons
-from impactlab.verification.finding import Curve, Finding, Panel, check
+from impactlab.verification.finding import Comparisons, Curve, Finding, Panel, check
 from impactlab.verification.solutions import beam_modes, hertz
 from impactlab.verification.solutions.contact_laws import LAWS
 from impactlab.verification.solutions.modal import ModalSolution, solve_with
@@ -63,7 +62,7 @@ def strip() -> Finding:
 
 def _compared(option: str, depth: float, nodes: int, other: tuple[str, str]) -> Finding:
     """Compare impacts with this `contact_compliance` with series; show another (its label)."""
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     panels = []
     for velocity in (0.99, 5.0):
         impact = elastic(paper_impact(velocity, "hertz"))
@@ -76,8 +75,7 @@ def _compared(option: str, depth: float, nodes: int, other: tuple[str, str]) -> 
         grid = Discretisation(nodes=nodes, points=3)
         run = run_dataset(ours, grid, duration=LONGER, samples=SAMPLES)
         exact, beside = (_series(replace(ours, contact_compliance=o)) for o in (option, other[0]))
-        table, time = Comparisons(f"{velocity:g} m/s, {nodes} nodes"), run.time.values
-        force = exact.at("contact_force", time)
+        time = run.time.values
         c, gamma = (float(value) for value in axis_compliance(ours))
         beneath = c * exact.contact_force - gamma * exact.midspan_curvature
         if option == "strip":
@@ -88,17 +86,16 @@ def _compared(option: str, depth: float, nodes: int, other: tuple[str, str]) -> 
             "contact_duration": exact.contact_duration,
             "maximum_indentation": float(exact.indentation.max()),
         }
-        table.curve("history of contact force", "N", run.contact_force.values, force, TOLERANCE)
-        indentation = run.indentation.values, exact.at("indentation", time)
-        table.curve("history of indentation", "m", *indentation, TOLERANCE)
-        table.responses(run, expected, TOLERANCE)
-        comparisons += table.absolute("energy error", "1", run.energy_error.item(), 0.0, 5e-5)
+        histories = {name: exact.at(name, time) for name in ("contact_force", "indentation")}
+        comparisons.at(f"{velocity:g} m/s, {nodes} nodes").histories(run, histories, TOLERANCE)
+        comparisons.responses(run, expected, TOLERANCE)
+        comparisons.absolute("energy error", "1", run.energy_error.item(), 0.0, 5e-5)
         curves = [
             Curve("solver", time, run.contact_force.values),
-            Curve("modal series", time, force, independent=True),
+            Curve("modal series", time, histories["contact_force"], independent=True),
             Curve(f"modal series, {other[1]}", time, beside.at("contact_force", time), True),
         ]
-        panels.append(Panel(table.where, ("time", "s"), ("contact force", "N"), curves))
+        panels.append(Panel(comparisons.where, ("time", "s"), ("contact force", "N"), curves))
     return Finding(comparisons, panels)
 
 
@@ -148,7 +145,7 @@ def contact_prestress() -> Finding:
     )
     expected = _prestressed(impact, run)
     force, time = run.contact_force.values, run.time.values
-    table.curve("history of contact force", "N", force, expected, 1e-3)
+    table.histories(run, {"contact_force": expected}, 1e-3)
     table.absolute("equivalent plastic strain", "1", run.peak_plastic_strain.item(), 0.0, 0.0)
     table.absolute("energy error", "1", run.energy_error.item(), 0.0, 1e-4)
     curves = [
@@ -209,7 +206,7 @@ def contact_patch() -> Finding:
     against. The law's own indentation, less the local compliance: Hertz's under that force.
     Energy: the solver's own audit.
     """
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     panels: list[Panel] = []
     for (model, scheme, compliance), (nodes, chords) in GRIDS.items():
         impact = replace(elastic(paper_impact(VELOCITY)), beam_model=model, load="contact_patch")
@@ -224,12 +221,13 @@ def contact_patch() -> Finding:
         hertzian = np.cbrt(run.contact_force.values / hertz.contact_stiffness(impact)) ** 2
         moved = run.sphere_displacement - run.indentation - run.midspan_deflection
         where = f"{model}, {compliance}, {scheme}, {nodes} nodes, {VELOCITY:g} m/s"
-        kappa, table = run.midspan_curvature.values, Comparisons(where)
-        table.curve("deflection", "m", run.midspan_deflection.values, deflection, 1e-3)
-        table.curve("curvature", "m-1", kappa, bent, 2e-3)
-        table.curve("mean deflection ahead of mid-span", "m", moved.values, ahead, chords)
-        table.curve("the law's own indentation", "m", law.values, hertzian, 2e-3)
-        comparisons += table.absolute("energy error", "1", run.energy_error.item(), 0.0, 2e-5)
+        kappa = run.midspan_curvature.values
+        comparisons.at(where)
+        comparisons.curve("deflection", "m", run.midspan_deflection.values, deflection, 1e-3)
+        comparisons.curve("curvature", "m-1", kappa, bent, 2e-3)
+        comparisons.curve("mean deflection ahead of mid-span", "m", moved.values, ahead, chords)
+        comparisons.curve("the law's own indentation", "m", law.values, hertzian, 2e-3)
+        comparisons.absolute("energy error", "1", run.energy_error.item(), 0.0, 2e-5)
         if not panels:
             point = run_dataset(
                 replace(impact, load="point"), grid, duration=DURATION, samples=STEPS + 1

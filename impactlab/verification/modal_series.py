@@ -15,8 +15,14 @@ from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import run_dataset
 from impactlab.types import Floats
 from impactlab.verification.cases import Sweep, aluminium_impact, elastic, timoshenko_impact
-from impactlab.verification.comparisons import Comparison, Comparisons, rms_error
-from impactlab.verification.finding import Curve, Finding, Panel, check
+from impactlab.verification.finding import (
+    Comparisons,
+    Curve,
+    Finding,
+    Panel,
+    check,
+    rms_error,
+)
 from impactlab.verification.solutions import hertz
 from impactlab.verification.solutions.beam_modes import odd_modes
 from impactlab.verification.solutions.modal import ModalSolution, solve, solve_timoshenko
@@ -102,19 +108,18 @@ def _run(impact: Impact, key: GridKey, duration: float) -> xr.Dataset:
 
 def _compare(
     where: str, grids: GridFamily, runs: Mapping[GridKey, xr.Dataset], series: ModalSolution
-) -> list[Comparison]:
+) -> Comparisons:
     """Compare one impact: histories on two grids, responses on the middle one, and orders."""
     middle, finest = (runs[grids.scheme, nodes] for nodes in (grids.middle, grids.nodes[-1]))
     expected = {"peak_force": series.peak_force, "contact_duration": series.contact_duration}
-    comparisons = [
-        *_histories(where, grids, middle, series).responses(middle, expected, 1e-3),
-        *_histories(where, grids, finest, series),
-    ]
+    comparisons = _histories(where, grids, middle, series).responses(middle, expected, 1e-3)
+    comparisons += _histories(where, grids, finest, series)
+    comparisons.at(where)
     pair = [runs[grids.scheme, nodes] for nodes in grids.pair]
     for (name, (quantity, _)), order in zip(HISTORIES.items(), grids.orders, strict=True):
         coarse, fine = (error(name, series, run) for run in pair)
         label, observed = f"order of convergence of {quantity}", float(np.log2(coarse / fine))
-        comparisons += Comparisons(where).absolute(label, "1", observed, order, 0.2)
+        comparisons.absolute(label, "1", observed, order, 0.2)
     return comparisons
 
 
@@ -231,7 +236,7 @@ def sub_impacts() -> Finding:
     small = elastic(timoshenko_impact())
     sphere, beam = replace(small.sphere, radius=0.02), replace(small.beam, span=0.307)
     large = replace(small, sphere=sphere, beam=beam)
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     panels: list[Panel] = []
     for where, impact, duration in (
         ("sphere of 10 mm radius, span of 153.5 mm", small, 1e-3),
@@ -240,7 +245,7 @@ def sub_impacts() -> Finding:
         series = solve(impact, duration)
         grid = Discretisation(nodes=801, points=3)
         run = run_dataset(impact, grid, duration=duration, samples=4001)
-        comparisons += _compare_contacts(where, run, series)
+        _compare_contacts(comparisons.at(where), run, series)
         time = run.time.values
         curves = [
             Curve(f"{grid.nodes} nodes", time, run.contact_force.values),
@@ -250,20 +255,19 @@ def sub_impacts() -> Finding:
     return Finding(comparisons, panels)
 
 
-def _compare_contacts(where: str, run: xr.Dataset, series: ModalSolution) -> list[Comparison]:
+def _compare_contacts(comparisons: Comparisons, run: xr.Dataset, series: ModalSolution) -> None:
     ours = _contacts(run.time.values, run.indentation.values, run.contact_force.values)
     theirs = _contacts(series.time, series.indentation, series.contact_force)
     count, total = run.number_of_contacts.item(), run.total_contact_time.item()
-    in_contact = sum(end - begin for begin, end, _ in theirs)
-    comparisons = Comparisons(where).absolute("number of contacts", "1", count, len(theirs), 0.5)
+    in_contact, where = sum(end - begin for begin, end, _ in theirs), comparisons.where
+    comparisons.absolute("number of contacts", "1", count, len(theirs), 0.5)
     comparisons.relative("total time in contact", "s", total, in_contact, 1e-4)
     for number, (contact, expected) in enumerate(zip(ours, theirs, strict=False), 1):
-        table = Comparisons(f"{where}, contact {number}")
+        comparisons.at(f"{where}, contact {number}")
         if number > 1:  # the first one begins at 0
-            table.relative("begin", "s", contact[0], expected[0], 1e-4)
-        table.relative("end", "s", contact[1], expected[1], 1e-4)
-        comparisons += table.relative("peak force", "N", contact[2], expected[2], 1e-3)
-    return comparisons
+            comparisons.relative("begin", "s", contact[0], expected[0], 1e-4)
+        comparisons.relative("end", "s", contact[1], expected[1], 1e-4)
+        comparisons.relative("peak force", "N", contact[2], expected[2], 1e-3)
 
 
 def _contacts(time: Floats, indentation: Floats, force: Floats) -> list[tuple[float, float, float]]:

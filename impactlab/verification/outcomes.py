@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.verification.comparisons import Comparison
-from impactlab.verification.finding import Curve, Finding, Outcome, Panel
+from impactlab.verification.finding import Comparison, Curve, Finding, Outcome, Panel
 
 Kinds = dict[str, tuple[type, str]]
 _CHECKS: Kinds = {

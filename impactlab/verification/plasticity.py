@@ -13,10 +13,8 @@ from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
 from impactlab.simulate import case_table, fibre_section, run_dataset
 from impactlab.solver import RULES, section
 from impactlab.types import Floats
-from impactlab.variables import HISTORIES
 from impactlab.verification.cases import with_beam_material
-from impactlab.verification.comparisons import Comparison, Comparisons
-from impactlab.verification.finding import Curve, Finding, Panel, check
+from impactlab.verification.finding import Comparisons, Curve, Finding, Panel, check
 from impactlab.verification.solutions import beam_modes, bending, collapse, fibre_beam, quadrature
 
 _HARDENING = {
@@ -40,7 +38,7 @@ def moment_curvature() -> Finding:
     out = np.linspace(0.0, turn, 41)[1:]
     back = np.linspace(turn, -turn, 101)[1:]
     path = np.concatenate([out, back, back[::-1]])
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     curves = []
     for name, moduli in _HARDENING.items():
         beam = with_beam_material(paper_impact(), **moduli).beam
@@ -54,8 +52,8 @@ def moment_curvature() -> Finding:
         fibres = np.concatenate(ours), np.concatenate(expected)
         fine, exact = _moments(beam, "legendre", 100, kappa), _exact_moments(beam, kappa)
         exact_where = f"{name}; 100 Gauss-Legendre points, the exact section"
-        comparisons += Comparisons(where).curve("moment", "N m", *fibres, 1e-12)
-        comparisons += Comparisons(exact_where).curve("moment", "N m", fine, exact, 5e-4)
+        comparisons.at(where).curve("moment", "N m", *fibres, 1e-12)
+        comparisons.at(exact_where).curve("moment", "N m", fine, exact, 5e-4)
         curves.append(Curve(name, kappa, fine))
         curves.append(Curve(f"{name}, exact", kappa, exact, independent=True))
     axes = ("curvature", "m-1"), ("bending moment", "N m")
@@ -91,8 +89,7 @@ def _exact_moments(beam: Beam, kappa: Floats) -> Floats:
 
 
 @check(
-    "Static deflection",
-    "Closed forms of beam bending, with the integration rule's own stiffness",
+    "Static deflection", "Closed forms of beam bending, with the integration rule's own stiffness"
 )
 def static_deflection() -> Finding:
     """Compare deflection and curvature at mid-span with the load, over 1.2 s: 130 periods.
@@ -102,7 +99,7 @@ def static_deflection() -> Finding:
     """
     beam = paper_impact().beam
     impact = _slow_impact(beam, mass=8e4, velocity=0.02, softness=50e-3)
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     panels: list[Panel] = []
     for rule, points in (("lobatto", 9), ("lobatto", 2), ("layers", 5)):
         run = run_dataset(impact, Discretisation(nodes=101, points=points, rule=rule), duration=1.2)
@@ -154,8 +151,7 @@ def _slow_impact(beam: Beam, mass: float, velocity: float, softness: float) -> I
 
 
 @check(
-    "Static collapse",
-    "Prager and Hodge 1951, chapter 2; impactlab.verification.solutions.collapse",
+    "Static collapse", "Prager and Hodge 1951, chapter 2; impactlab.verification.solutions.collapse"
 )
 def static_collapse() -> Finding:
     """Compare load against deflection, plateau, permanent deflection; plateaus of coarse rules.
@@ -166,7 +162,7 @@ def static_collapse() -> Finding:
     hardening = with_beam_material(paper_impact(), isotropic_hardening_modulus=5e9).beam
     run, harder = (_run_collapse(beam, "layers", 40) for beam in (perfect, hardening))
     largest = 30e-3  # m; every run exceeds it
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     curves = []
     for dataset, beam, where, tolerance, label in (
         (run, perfect, "elastic-perfectly plastic, 40 layers", 8e-3, "perfectly plastic"),
@@ -174,29 +170,27 @@ def static_collapse() -> Finding:
     ):
         points = np.linspace(0.5e-3, largest, 100)
         ours, expected = np.interp(points, *_on_loading(dataset)), _static(beam, points)
-        comparisons += Comparisons(where).curve(
-            "load by deflection", "N", ours, expected, tolerance
-        )
+        comparisons.at(where).curve("load by deflection", "N", ours, expected, tolerance)
         deflection, force = dataset.midspan_deflection.values, dataset.contact_force.values
         points = np.linspace(0.5e-3, largest, 60)
         curves.append(Curve(label, deflection, force))
         curves.append(Curve(f"{label}, static", points, _static(beam, points), independent=True))
     limit = bending.collapse_load(perfect)
-    layers = Comparisons("40 layers; 4 M_p/L")
-    comparisons += layers.relative("collapse load", "N", _plateau(run), limit, 5e-4)
+    comparisons.at("40 layers; 4 M_p/L")
+    comparisons.relative("collapse load", "N", _plateau(run), limit, 5e-4)
     far = np.array([1e3 * bending.yield_curvature(perfect)])
     for number in (3, 9):
         rule = quadrature.rule("lobatto", number)
         plastic_load = 4.0 / perfect.span * bending.path_moments(perfect, far, *rule).item()
         plateau = _plateau(_run_collapse(perfect, "lobatto", number))
-        rules = Comparisons(f"{number} Lobatto points; 4/L times the rule's own plastic moment")
-        comparisons += rules.relative("collapse load", "N", plateau, plastic_load, 5e-4)
+        comparisons.at(f"{number} Lobatto points; 4/L times the rule's own plastic moment")
+        comparisons.relative("collapse load", "N", plateau, plastic_load, 5e-4)
     # The striker leaves slowly, the beam springs back elastically.
     deflection = run.midspan_deflection.values
     left = float(deflection.max()) - bending.static_deflection(perfect, limit)
-    layers = Comparisons("40 layers; largest deflection less P_c L^3/(48 EI)")
     permanent = float(deflection[-400:].mean())
-    comparisons += layers.relative("permanent deflection", "m", permanent, left, 1e-3)
+    comparisons.at("40 layers; largest deflection less P_c L^3/(48 EI)")
+    comparisons.relative("permanent deflection", "m", permanent, left, 1e-3)
     axes = ("deflection at mid-span", "m"), ("load at mid-span", "N")
     return Finding(comparisons, [Panel("Loading to collapse, and back", *axes, curves)])
 
@@ -235,18 +229,18 @@ _MODE_GRID = Discretisation(nodes=101, points=40, rule="layers")
 )
 def rigid_plastic_mode() -> Finding:
     """Compare permanent deflection and duration with the mode, and the approach to it."""
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     # Kinetic energy over the largest elastic energy of the beam; mass of the striker over that of
     # the beam, whose momentum matters more, the lighter: 6 % at 5.
     ratios, heavy = np.array([10.0, 30.0, 100.0, 300.0]), 100.0
     for mass in (heavy, 20.0, 5.0):
         impact, run = _struck(mass, ratio := float(ratios[-1]))
-        table = Comparisons(f"energy ratio {ratio:g}, mass ratio {mass:g}; mode")
+        comparisons.at(f"energy ratio {ratio:g}, mass ratio {mass:g}; mode")
         left, deflection = _permanent_deflection(run), collapse.mode_deflection(impact)
         stop = float(run.time[int(np.argmax(run.midspan_deflection.values))])
-        table.relative("permanent deflection", "m", left, deflection, 1e-2)
+        comparisons.relative("permanent deflection", "m", left, deflection, 1e-2)
         time = collapse.mode_duration(impact)
-        comparisons += table.relative("time to the largest deflection", "s", stop, time, 1e-2)
+        comparisons.relative("time to the largest deflection", "s", stop, time, 1e-2)
     permanents, modes, expected = [], [], []
     for ratio in ratios.tolist():
         impact, run = _struck(heavy, ratio)
@@ -255,7 +249,7 @@ def rigid_plastic_mode() -> Finding:
         expected.append(collapse.elastic_plastic_deflection(impact))
         where = f"energy ratio {ratio:g}, mass ratio {heavy:g}; mode and elastic bending"
         values = permanents[-1], expected[-1]
-        comparisons += Comparisons(where).relative("permanent deflection", "m", *values, 5e-3)
+        comparisons.at(where).relative("permanent deflection", "m", *values, 5e-3)
     final = np.array(modes)
     shortfall = 1.0 - np.array(expected) / final
     curves = [
@@ -312,24 +306,18 @@ elements and steps."""
 )
 def fibre_elements() -> Finding:
     """Compare both schemes with an implicit solution of sphere, contact, beam and fibres."""
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     panels: list[Panel] = []
     for name, impact in STRUCK.items():
         exact = fibre_beam.solve(impact, STRUCK_DURATION, elements=ELEMENTS, steps=STEPS)
         curves = []
         for scheme, nodes in (("leapfrog", 401), ("modal", 201)):
-            table = Comparisons(f"{scheme}: {name}")
+            comparisons.at(f"{scheme}: {name}")
             grid = Discretisation(nodes=nodes, scheme=scheme)
             run = run_dataset(impact, grid, duration=STRUCK_DURATION, samples=STEPS + 1)
             for variable, tolerance in FIBRE_TOLERANCES.items():
-                theirs = getattr(exact, variable)
-                if variable in HISTORIES:
-                    label = f"history of {HISTORIES[variable].long_name}"
-                    ours, units = run[variable].values, HISTORIES[variable].units
-                    table.curve(label, units, ours, theirs, tolerance)
-                else:
-                    table.responses(run, {variable: theirs}, tolerance)
-            comparisons += table
+                compare = comparisons.histories if run[variable].dims else comparisons.responses
+                compare(run, {variable: getattr(exact, variable)}, tolerance)
             curves.append(Curve(f"{scheme}, {nodes} nodes", exact.time, run.contact_force.values))
         curves.append(Curve("fibre elements", exact.time, exact.contact_force, independent=True))
         panels.append(Panel(name, ("time", "s"), ("contact force", "N"), curves))

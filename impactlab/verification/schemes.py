@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain, pairwise, product
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
@@ -18,8 +18,15 @@ from impactlab.simulate import run_dataset, simulate_many
 from impactlab.solver import RULES, SCHEMES
 from impactlab.types import Floats
 from impactlab.verification.cases import discretised, elastic, with_beam_material
-from impactlab.verification.comparisons import Comparison, Comparisons, rms_error, worst
-from impactlab.verification.finding import Curve, Finding, Panel, check
+from impactlab.verification.finding import (
+    Comparisons,
+    Curve,
+    Finding,
+    Panel,
+    check,
+    rms_error,
+    worst,
+)
 from impactlab.verification.solutions.contact_laws import LAWS
 
 HALVINGS = (1, 2, 4, 8, 16, 32, 64)
@@ -116,7 +123,7 @@ _SHORTER = {"leapfrog": 1.0, "modal": 8.0}
 )
 def observed_order() -> Finding:
     """Compare the orders in which the differences between successive runs fall with theory."""
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     panels: list[Panel] = []
     for (name, case), scheme in product(CASES_IN_TIME.items(), SCHEMES):
         # Successively shorter steps, sampled at the longest ones.
@@ -124,7 +131,7 @@ def observed_order() -> Finding:
         grid = Discretisation(nodes=nodes, points=case.points, scheme=scheme)
         least = math.ceil(case.duration / (0.8 * case.critical_step(grid)))
         runs = [case.run(grid, least * times, least + 1) for times in HALVINGS]
-        comparisons += _orders(where, case, runs[-5:], case.orders[scheme])
+        _compare_orders(comparisons.at(where), case, runs[-5:], case.orders[scheme])
         axis = "steps over those at a Courant number of 0.8"
         panels.append(_order_panel(where, case, runs, axis, HALVINGS, case.orders[scheme]))
     for name, case in CASES_IN_SPACE.items():
@@ -135,21 +142,19 @@ def observed_order() -> Finding:
             largest = grids[-1].courant * case.critical_step(grids[-1]) / _SHORTER[scheme]
             steps = math.ceil(case.duration / largest / (_SAMPLES - 1)) * (_SAMPLES - 1)
             runs = [case.run(grid, steps, _SAMPLES) for grid in grids]
-            comparisons += _orders(where, case, runs[-3:], order)
+            _compare_orders(comparisons.at(where), case, runs[-3:], order)
             panels.append(_order_panel(where, case, runs, "nodes", numbers, order))
     return Finding(comparisons, panels)
 
 
-def _orders(
-    where: str, case: ConvergenceCase, runs: Sequence[xr.Dataset], order: float
-) -> Comparisons:
+def _compare_orders(
+    comparisons: Comparisons, case: ConvergenceCase, runs: Sequence[xr.Dataset], order: float
+) -> None:
     """Compare the orders from the first to the last difference, each from a doubling."""
-    comparisons = Comparisons(where)
     for name in case.answers:
         apart = _apart(name, runs)
         observed = float(np.log2(apart[0] / apart[-1])) / (len(apart) - 1)
         comparisons.absolute(name, "1", observed, order, 0.2)
-    return comparisons
 
 
 def _apart(name: str, runs: Sequence[xr.Dataset]) -> Floats:
@@ -206,10 +211,10 @@ at 20 m/s."""
 @check("Schemes in time", "leapfrog with 1601 nodes; conservation of energy")
 def schemes() -> Finding:
     """Compare both schemes where the beam yields, and the energy of random cases."""
-    impacts = [paper_impact(15.0), paper_impact(20.0)]
-    references = [_run(impact, "leapfrog", FINE) for impact in impacts]
-    yielding = map(_yielding, impacts, references)
-    return Finding([*chain.from_iterable(yielding), _stable()])
+    comparisons = Comparisons()
+    for velocity in (15.0, 20.0):
+        _compare_yielding(comparisons, paper_impact(velocity))
+    return Finding([*comparisons, worst(_energy_errors())])
 
 
 def _run(impact: Impact, scheme: str, nodes: int) -> xr.Dataset:
@@ -217,17 +222,15 @@ def _run(impact: Impact, scheme: str, nodes: int) -> xr.Dataset:
     return run_dataset(impact, grid, duration=DURATION, samples=401)
 
 
-def _yielding(impact: Impact, fine: xr.Dataset) -> list[Comparison]:
+def _compare_yielding(comparisons: Comparisons, impact: Impact) -> None:
     """Compare the responses of the paper's perfectly plastic beam with those of a fine run."""
-    comparisons: list[Comparison] = []
+    fine = _run(impact, "leapfrog", FINE)
     for scheme, nodes in YIELDING_NODES.items():
-        table = Comparisons(f"{scheme}: {impact.velocity:g} m/s, {nodes} nodes")
+        comparisons.at(f"{scheme}: {impact.velocity:g} m/s, {nodes} nodes")
         run = _run(impact, scheme, nodes)
         times = HINGED if scheme == "modal" and impact.velocity > 15.0 else 1.0
         for name, tolerance in TOLERANCES.items():
-            table.responses(run, {name: fine[name].item()}, times * tolerance)
-        comparisons += table
-    return comparisons
+            comparisons.responses(run, {name: fine[name].item()}, times * tolerance)
 
 
 def drawn(number: int, seed: int) -> dict[str, Any]:
@@ -251,17 +254,15 @@ def drawn(number: int, seed: int) -> dict[str, Any]:
     }
 
 
-def _stable() -> Comparison:
-    """Compare the worst energy balance of the modal scheme; a diverged run has none."""
+def _energy_errors() -> Comparisons:
+    """Compare energy balances of random cases of the modal scheme; a diverged run has none."""
     grid = Discretisation(scheme="modal")
     runs = simulate_many(paper_impact(), grid, duration=4e-3, varied=drawn(48, seed=1))
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     for _, run in runs.groupby("run", squeeze=False):
         where = (
             f"modal: {run.velocity.item():.3g} m/s, {run.contact.item()}, "
             f"{run.nodes.item()} nodes, {run.points.item()} points, {run.rule.item()}"
         )
-        comparisons += Comparisons(where).absolute(
-            "energy error", "1", run.energy_error.item(), 0.0, 1e-2
-        )
-    return worst(comparisons)
+        comparisons.at(where).absolute("energy error", "1", run.energy_error.item(), 0.0, 1e-2)
+    return comparisons

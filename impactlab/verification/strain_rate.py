@@ -14,8 +14,7 @@ from impactlab.solver.section import bend_at_rate
 from impactlab.solver.strain_rate import CowperSymonds
 from impactlab.types import Floats
 from impactlab.verification.cases import with_beam_material
-from impactlab.verification.comparisons import Comparison, Comparisons
-from impactlab.verification.finding import Curve, Finding, Panel, check
+from impactlab.verification.finding import Comparisons, Curve, Finding, Panel, check
 from impactlab.verification.solutions import hertz
 
 D, Q = 40.4, 5.0
@@ -38,22 +37,20 @@ def strain_rate() -> Finding:
     plastic = static * beam.section.plastic_modulus
     closed = plastic * (1.0 + 2.0 * Q / (2.0 * Q + 1.0) * (_RATES / D) ** (1.0 / Q))
     ours = _moments(impact, _RATES)
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     for rate, mine, exact in zip(_RATES, ours, closed, strict=True):
-        at_rate = Comparisons(f"{rate:g} 1/s at the surface")
-        comparisons += at_rate.relative("moment", "N m", mine, exact, 1e-3)
-    comparisons += _contacts(impact)
-    impacts = Comparisons("20 m/s, contact patch")
+        where = f"{rate:g} 1/s at the surface"
+        comparisons.at(where).relative("moment", "N m", mine, exact, 1e-3)
+    _compare_contacts(comparisons, impact)
+    comparisons.at("20 m/s, contact patch")
     leapfrog, modal = (_run(impact, scheme) for scheme in ("leapfrog", "modal"))
     for name, tolerance in (("peak_plastic_strain", 0.02), ("plastic_dissipation", 0.02)):
         label, units = f"{name.replace('_', ' ')}, leapfrog beside modal", leapfrog[name].units
         values = leapfrog[name].item(), modal[name].item()
-        impacts.relative(label, units, *values, tolerance)
+        comparisons.relative(label, units, *values, tolerance)
     curves = [Curve("solver", _RATES, ours), Curve("closed form", _RATES, closed, independent=True)]
     axes = ("strain rate at the surface", "s-1"), ("moment", "N m")
-    return Finding(
-        [*comparisons, *impacts], [Panel("bent at a constant rate", *axes, curves, log=True)]
-    )
+    return Finding(comparisons, [Panel("bent at a constant rate", *axes, curves, log=True)])
 
 
 def _moments(impact: Impact, rates: Floats) -> Floats:
@@ -72,9 +69,8 @@ def _moments(impact: Impact, rates: Floats) -> Floats:
     return np.array(moments)
 
 
-def _contacts(impact: Impact) -> list[Comparison]:
+def _compare_contacts(comparisons: Comparisons, impact: Impact) -> None:
     """Compare contacts of the rate with those of the yield stress at the rate that Hertz gives."""
-    comparisons: list[Comparison] = []
     for velocity in (0.99, 10.0):
         dynamic = replace(impact, velocity=velocity, beam_model="elastic")
         mass, radius = dynamic.sphere.total_mass, dynamic.sphere.radius
@@ -86,8 +82,7 @@ def _contacts(impact: Impact) -> list[Comparison]:
         run, reference = (_run(case, "modal") for case in (dynamic, still))
         expected = {name: reference[name].item() for name in ("peak_force", "maximum_indentation")}
         where = f"{velocity:g} m/s, {rate:.0f} 1/s under the contact"
-        comparisons += Comparisons(where).responses(run, expected, 1e-5)
-    return comparisons
+        comparisons.at(where).responses(run, expected, 1e-5)
 
 
 def _run(impact: Impact, scheme: str) -> xr.Dataset:

@@ -22,8 +22,15 @@ from impactlab.solver.stability import discretise
 from impactlab.types import Floats
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 from impactlab.verification.cases import elastic, with_beam_material
-from impactlab.verification.comparisons import Comparison, Comparisons, worst
-from impactlab.verification.finding import Curve, Finding, Panel, check
+from impactlab.verification.finding import (
+    Comparison,
+    Comparisons,
+    Curve,
+    Finding,
+    Panel,
+    check,
+    worst,
+)
 
 _DIMENSIONS = {
     "kg": (1, 0, 0),
@@ -93,7 +100,7 @@ def similarity() -> Finding:
     The independent part is dimensional analysis: a constant with a unit, hidden in the code, would
     break it.
     """
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     panels: list[Panel] = []
     for scheme, grid in _SCALED_GRIDS.items():
         curves = []
@@ -113,7 +120,9 @@ def similarity() -> Finding:
     return Finding(comparisons, panels)
 
 
-def _compare(where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale) -> list[Comparison]:
+def _compare(
+    where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale
+) -> tuple[Comparison, Comparison]:
     """Compare the worst of the responses, and the worst of the curves."""
     energy = float(0.5 * run.sphere_mass * run.velocity**2)
     # small differences of large numbers are compared by the scale of those
@@ -133,7 +142,7 @@ def _compare(where: str, run: xr.Dataset, scaled: xr.Dataset, scale: Scale) -> l
         ours = scaled[name].values.ravel() / scale.factor(entry.units)
         label = f"worst curve: {entry.long_name}"
         curves.curve(label, entry.units, ours, run[name].values.ravel(), TOLERANCE)
-    return [worst(answers), worst(curves)]
+    return worst(answers), worst(curves)
 
 
 class _March(ABC):
@@ -234,7 +243,7 @@ def time_reversal() -> Finding:
     The march uses the kernels' beam and contact, and is shown to be that of simulate().
     """
     impact, duration = elastic(paper_impact(0.99)), 0.5e-3
-    comparisons: list[Comparison] = []
+    comparisons = Comparisons()
     curves: list[Curve] = []
     for kind, grid in _MARCHES.items():
         march = kind(impact, grid, duration)
@@ -247,7 +256,6 @@ def time_reversal() -> Finding:
         solver = run_dataset(impact, grid, duration=duration, samples=steps + 1)
         time, newtons = solver.time.values, solver.contact_force.values
         where = f"{grid.scheme}: the paper's case, elastic, {steps} steps there and back"
-        table = Comparisons(where)
         label = "contact force of the march and of simulate()"
         moving, left = (float(np.max(np.abs(values))) for values in (march.u, march.w))
         ends = {
@@ -257,11 +265,10 @@ def time_reversal() -> Finding:
             "deflection left over the largest": (left / largest, 0.0),
         }
         # The force at the turn belongs to the way back, the force at first touch to the way there.
-        table.curve(label, "N", forward, newtons[:-1], TOLERANCE)
-        table.curve("contact force, back and there", "N", back[:-1], forward[1:], TOLERANCE)
+        comparisons.at(where).curve(label, "N", forward, newtons[:-1], TOLERANCE)
+        comparisons.curve("contact force, back and there", "N", back[:-1], forward[1:], TOLERANCE)
         for name, values in ends.items():
-            table.absolute(name, "1", *values, TOLERANCE)
-        comparisons += table
+            comparisons.absolute(name, "1", *values, TOLERANCE)
         curves += [
             Curve(f"{grid.scheme}: there", time[:-1], forward),
             Curve(f"{grid.scheme}: back, in reverse", time[1:], back, independent=True),

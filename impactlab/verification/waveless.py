@@ -14,8 +14,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import run_dataset
 from impactlab.verification.cases import Sweep, elastic, rigid_backed
-from impactlab.verification.comparisons import Comparisons
-from impactlab.verification.finding import Curve, Finding, Panel, check
+from impactlab.verification.finding import Comparisons, Curve, Finding, Panel, check
 from impactlab.verification.solutions import hertz, lumped, modal
 from impactlab.verification.solutions.contact_laws import LAWS, LawOnHalfSpace, law_on_half_space
 from impactlab.verification.solutions.stronge import stronge_impact
@@ -26,8 +25,7 @@ _VELOCITY, _RESTITUTION = ("velocity", "m s-1"), ("coefficient of restitution", 
 
 
 @check(
-    "Impact on a half-space",
-    "Hertz 1881; closed forms in impactlab.verification.solutions.hertz",
+    "Impact on a half-space", "Hertz 1881; closed forms in impactlab.verification.solutions.hertz"
 )
 def half_space() -> Finding:
     """Compare peak force, largest indentation, contact duration and restitution."""
@@ -129,12 +127,7 @@ def _force_curves(run: xr.Dataset, law: LawOnHalfSpace, mass: float) -> list[Cur
     return [Curve(law.law, *ours), Curve(_QUADRATURE, depth, force, independent=True)]
 
 
-HISTORIES = {
-    "contact_force": ("contact force", "N"),
-    "midspan_deflection": ("mid-span deflection", "m"),
-    "sphere_displacement": ("displacement of the sphere", "m"),
-    "indentation": ("indentation", "m"),
-}
+HISTORIES = "contact_force", "midspan_deflection", "sphere_displacement", "indentation"
 SPRING_MASS_TOLERANCE = 2e-6
 _NODES, _SAMPLES = 101, 401
 _FORCE_AXES = ("time", "s"), ("contact force", "N")
@@ -191,9 +184,8 @@ def _compare_spring_mass(where: str, impact: Impact, duration: float) -> Compari
     run = _run_spring_mass(impact, duration)
     exact, time = lumped.solve_spring_mass(impact, duration), run.time.values
     comparisons = Comparisons(where)
-    for name, (quantity, units) in HISTORIES.items():
-        values = run[name].values, exact.at(name, time)
-        comparisons.curve(f"history of {quantity}", units, *values, SPRING_MASS_TOLERANCE)
+    histories = {name: exact.at(name, time) for name in HISTORIES}
+    comparisons.histories(run, histories, SPRING_MASS_TOLERANCE)
     # of the curvature the finite differences have (1 - 2/(nodes - 1)^2)
     label, tolerance = "history of mid-span curvature", 2.5 / (_NODES - 1) ** 2
     curvature = -12.0 / impact.beam.span**2 * exact.at("midspan_deflection", time)
@@ -238,7 +230,7 @@ def rigid_beam() -> Finding:
     slow = Comparisons("Hertz contact under gravity, 0.02 m/s")  # it adds 11 % to the peak force
     ours, force = run.contact_force.values, exact.at("contact_force", time)
     expected = {"peak_force": exact.peak_force, "contact_duration": exact.contact_duration}
-    slow.curve("history of contact force", "N", ours, force, RIGID_TOLERANCE)
+    slow.histories(run, {"contact_force": force}, RIGID_TOLERANCE)
     slow.responses(run, expected, RIGID_TOLERANCE)
     curves = [
         Curve("solver", time, ours),

@@ -20,8 +20,7 @@ from made_runs import (
 from impactlab.solver.contact import LAWS
 from impactlab.solver.outputs import OUTSIDE_CONTACT_LAW
 from impactlab.variables import RESPONSES, described
-from impactlab.verification.comparisons import Comparison, Comparisons
-from impactlab.verification.finding import Curve, Finding, Outcome, Panel
+from impactlab.verification.finding import Comparison, Comparisons, Curve, Finding, Outcome, Panel
 from impactlab.verification.outcomes import packed
 
 

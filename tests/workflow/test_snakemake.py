@@ -14,8 +14,7 @@ import xarray as xr
 
 from impactlab.files import write_netcdf
 from impactlab.variables import provenance
-from impactlab.verification.comparisons import Comparisons
-from impactlab.verification.finding import Finding, Outcome
+from impactlab.verification.finding import Comparisons, Finding, Outcome
 from impactlab.verification.outcomes import packed
 
 ROOT = Path(__file__).parents[2]

@@ -9,8 +9,7 @@ from command_line import CHECKS, here
 from command_line import done as impactlab
 
 from impactlab.verification.catalogue import CATALOGUE
-from impactlab.verification.comparisons import Comparisons
-from impactlab.verification.finding import Check, Finding
+from impactlab.verification.finding import Check, Comparisons, Finding
 
 
 def test_checks_from_the_file_to_the_index(folder):

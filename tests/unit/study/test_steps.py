@@ -6,8 +6,7 @@ from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.schema.declarations import Verification
 from impactlab.study.steps import check, failure, removable
 from impactlab.verification.catalogue import CATALOGUE
-from impactlab.verification.comparisons import Comparisons
-from impactlab.verification.finding import Check, Finding
+from impactlab.verification.finding import Check, Comparisons, Finding
 from impactlab.verification.outcomes import unpacked
 
 

@@ -8,8 +8,15 @@ import pytest
 
 from impactlab.verification import catalogue
 from impactlab.verification.catalogue import CATALOGUE
-from impactlab.verification.comparisons import Comparison, Comparisons, worst
-from impactlab.verification.finding import Check, Finding, Outcome, gravest_first
+from impactlab.verification.finding import (
+    Check,
+    Comparison,
+    Comparisons,
+    Finding,
+    Outcome,
+    gravest_first,
+    worst,
+)
 
 
 def entry(where, error, tolerance):
