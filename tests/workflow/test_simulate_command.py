@@ -1,21 +1,10 @@
 """One run on the command line, and what a command loads."""
 
 import pytest
-import xarray as xr
 from command_line import called, succeeded
 from command_line import done as impactlab
 
 import impactlab as il
-
-
-def test_simulate_prints_and_keeps(tmp_path):
-    done = impactlab(
-        "simulate", "--nodes", 101, "--duration", "0.5 ms", "--output", "one.nc", cwd=tmp_path
-    )
-    assert "peak_force" in done.stdout
-    assert "11.75 kN" in done.stdout
-    one = xr.load_dataset(tmp_path / "one.nc")
-    assert one["peak_force"].attrs["units"] == "N"
 
 
 def test_simulate_takes_a_scheme(tmp_path):

@@ -126,18 +126,6 @@ def test_a_deck_is_written_and_nothing_solved(impactlab, tmp_path):
     assert len(list((tmp_path / FOLDER).iterdir())) == 2
 
 
-def test_a_run_that_goes_wrong_keeps_what_it_has(impactlab, tmp_path, undrawn, monkeypatch):
-    from impactlab.fem3d import comparison as package
-
-    whole = package.solve_on
-    stopped = {"stopped": "an element was squeezed flat"}
-    monkeypatch.setattr(package, "solve_on", lambda *a, **k: whole(*a, **k).assign_attrs(stopped))
-    code, said = impactlab("witness", *COARSE)
-    assert code == 1
-    assert f"squeezed flat; {FOLDER} holds what was computed until then" in said
-    assert (tmp_path / FOLDER / "witness.nc").exists()
-
-
 def test_a_contact_that_outgrows_the_patch_keeps_what_it_has(impactlab, tmp_path, undrawn):
     small = ("--patch", "2 mm", "--velocity", "9 m/s", "--output", "here")
     (tmp_path / "here").mkdir()
@@ -150,21 +138,31 @@ def test_a_contact_that_outgrows_the_patch_keeps_what_it_has(impactlab, tmp_path
     assert xr.load_dataset(tmp_path / "here" / "witness.nc")["peak_force"].isnull()
 
 
-def test_what_was_broken_off_does_not_take_the_place_of_a_whole_run(
+def test_what_was_broken_off_is_kept_but_not_in_place_of_a_whole_run(
     impactlab, tmp_path, undrawn, monkeypatch
 ):
     from impactlab.fem3d import comparison as package
 
-    impactlab("witness", *COARSE)
-    first = (tmp_path / FOLDER / "witness.nc").read_bytes()
     whole = package.solve_on
-    monkeypatch.setattr(
-        package, "solve_on", lambda *a, **k: whole(*a, **k).assign_attrs(stopped="so")
-    )
+    stopped = {"stopped": "an element was squeezed flat"}
+
+    def broken(*args, **options):
+        return whole(*args, **options).assign_attrs(stopped)
+
+    with monkeypatch.context() as first:
+        first.setattr(package, "solve_on", broken)
+        code, said = impactlab("witness", *COARSE)
+    assert code == 1
+    assert f"squeezed flat; {FOLDER} holds what was computed until then" in said
+    assert xr.load_dataset(tmp_path / FOLDER / "witness.nc").attrs["stopped"] == stopped["stopped"]
+    impactlab("witness", *COARSE)
+    kept = (tmp_path / FOLDER / "witness.nc").read_bytes()
+    monkeypatch.setattr(package, "solve_on", broken)
     _, said = impactlab("witness", *COARSE)
     assert f"{FOLDER}_stopped holds what was computed until then" in said
-    assert (tmp_path / FOLDER / "witness.nc").read_bytes() == first
-    assert xr.load_dataset(tmp_path / f"{FOLDER}_stopped" / "witness.nc").attrs["stopped"] == "so"
+    assert (tmp_path / FOLDER / "witness.nc").read_bytes() == kept
+    again = xr.load_dataset(tmp_path / f"{FOLDER}_stopped" / "witness.nc")
+    assert again.attrs == again.attrs | stopped
 
 
 def test_a_folder_that_cannot_be_written_to_is_told_before_anything_is_solved(

@@ -56,13 +56,3 @@ def test_g_by_its_factors():
     point = np.linspace(0.05, 0.95, 8)
     at = np.prod((np.abs(4 * point - 2) + A) / (1 + A))
     assert FUNCTIONS["g"].value(point[None]) == pytest.approx(at)
-
-
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_shapes(name):
-    indices, count = INDICES[name], len(FUNCTIONS[name].ranges)
-    assert indices.first_order.shape == indices.total_order.shape == (count,)
-    pairs = indices.second_order
-    assert pairs.shape == (count, count)
-    assert np.isnan(np.diagonal(pairs)).all()
-    np.testing.assert_array_equal(pairs, pairs.T)

@@ -71,16 +71,6 @@ def test_quantiles_rise_and_keep_to_the_bounds(name):
         assert bounds["low"] <= values[0] < values[-1] <= bounds["high"]
 
 
-def test_special_quantiles():
-    one_deviation = np.array([normal_probability(1.0)])
-    half = np.array([0.5])
-    assert made("normal", **CASES["normal"]).quantile(one_deviation) == pytest.approx(12.0)
-    assert made("lognormal", **CASES["lognormal"]).quantile(one_deviation) == pytest.approx(13.0)
-    assert made("log_uniform", **CASES["log_uniform"]).quantile(half) == pytest.approx(8.0)
-    at_mode = np.array([1 / 6])  # (mode - low)/(high - low): the share below the mode
-    assert made("triangular", **CASES["triangular"]).quantile(at_mode) == pytest.approx(3.0)
-
-
 @pytest.mark.parametrize(
     ("name", "change", "where", "words"),
     [

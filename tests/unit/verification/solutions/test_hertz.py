@@ -46,9 +46,6 @@ def test_closed_forms_solve_the_equation_of_motion():
     assert hertz.contact_duration(*arguments) == pytest.approx(path.t_events[0][0], rel=1e-7)
     force = 4 / 3 * MODULUS * math.sqrt(RADIUS) * deepest**1.5
     assert hertz.peak_force(*arguments) == pytest.approx(force, rel=1e-7)
-
-
-def test_contact_time_factor_is_the_published_one():
     assert pytest.approx(2.9433, abs=5e-5) == hertz.CONTACT_TIME_FACTOR
 
 
@@ -56,9 +53,6 @@ def test_effective_modulus_of_like_bodies_is_half_the_plane_strain_one():
     steel = timoshenko_impact().beam.material
     expected = steel.youngs_modulus / (2 * (1 - 0.3**2))
     assert hertz.effective_modulus(timoshenko_impact()) == pytest.approx(expected, rel=1e-12)
-
-
-def test_effective_modulus_takes_both_bodies():
     assert hertz.effective_modulus(paper_impact()) == pytest.approx(
         208e9 * 210e9 / (418e9 * 0.91), rel=1e-12
     )
