@@ -35,11 +35,7 @@ RULES = {
     "HEADING": Rule(MODEL, lines=(1, MANY), entries=(1, 80)),
     "NODE": Rule(MODEL, optional={"NSET": None}, lines=(1, MANY), entries=(4, 4)),
     "ELEMENT": Rule(
-        MODEL,
-        {"TYPE": {"C3D8", "C3D8R"}},
-        {"ELSET": None},
-        lines=(1, MANY),
-        entries=(9, 9),
+        MODEL, {"TYPE": {"C3D8", "C3D8R"}}, {"ELSET": None}, lines=(1, MANY), entries=(9, 9)
     ),
     "ELSET": Rule(MODEL, {"ELSET": None}, lines=(1, MANY), entries=(1, 16)),
     "NSET": Rule(MODEL, {"NSET": None}, lines=(1, MANY), entries=(1, 16)),
@@ -84,12 +80,7 @@ RULES = {
     ),
     "OUTPUT": Rule(
         STEP,
-        optional={
-            "FIELD": FLAG,
-            "HISTORY": FLAG,
-            "TIME INTERVAL": None,
-            "NUMBER INTERVAL": None,
-        },
+        optional={"FIELD": FLAG, "HISTORY": FLAG, "TIME INTERVAL": None, "NUMBER INTERVAL": None},
     ),
     "NODE OUTPUT": Rule(STEP, optional={"NSET": None}, lines=(1, MANY), entries=(1, 16)),
     "ELEMENT OUTPUT": Rule(STEP, optional={"ELSET": None}, lines=(1, MANY), entries=(1, 16)),

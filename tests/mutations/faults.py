@@ -13,12 +13,7 @@ class Fault(NamedTuple):
 
 
 FAULTS = (
-    Fault(
-        "Hertz: 4/3 is 1.3",
-        "contact/hertz.py",
-        "K = 4.0 / 3.0 * E",
-        "K = 1.3 * E",
-    ),
+    Fault("Hertz: 4/3 is 1.3", "contact/hertz.py", "K = 4.0 / 3.0 * E", "K = 1.3 * E"),
     Fault(
         "Stronge: residual indentation without R_e/R*",
         "contact/stronge.py",
@@ -114,10 +109,7 @@ FAULTS = (
         "push * (F - Q[mid - 1])",
     ),
     Fault(
-        "spring-mass: half of the beam's mass",
-        "lumped.py",
-        "17.0 / 35.0 * beam,",
-        "0.5 * beam,",
+        "spring-mass: half of the beam's mass", "lumped.py", "17.0 / 35.0 * beam,", "0.5 * beam,"
     ),
     Fault(
         "rigid beam: gives way as the spring-mass model",

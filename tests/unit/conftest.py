@@ -115,11 +115,7 @@ def discretisation_study():
 @made_once
 def time_step_study():
     """Courant by scheme by nodes: errors of second order in the time step about each limit."""
-    varied = {
-        "courant": [0.2, 0.4, 0.8],
-        "scheme": ["leapfrog", "modal"],
-        "nodes": [101, 201],
-    }
+    varied = {"courant": [0.2, 0.4, 0.8], "scheme": ["leapfrog", "modal"], "nodes": [101, 201]}
     design = design_of(varied, study="time_step", method="grid", histories=0, profiles=0)
     runs = with_answers(design)
     limit = runs[list(RESPONSES)].to_array("response").isel(courant=0, drop=True)

@@ -23,8 +23,7 @@ SLOW = ("contact_patch", "contact_prestress", "strain_rate", "strip")
 @pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning")
 @pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 @pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=[pytest.mark.long] * (name in SLOW)) for name in CATALOGUE],
+    "name", [pytest.param(name, marks=[pytest.mark.long] * (name in SLOW)) for name in CATALOGUE]
 )
 def test_check(name):
     finding = CATALOGUE[name].check()

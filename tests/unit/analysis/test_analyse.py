@@ -2,7 +2,6 @@
 
 import sys
 import tracemalloc
-from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -19,7 +18,6 @@ from impactlab.methods import estimators as method
 from impactlab.methods import saltelli
 from impactlab.study.steps import analyse_runs
 
-Build = Callable[..., xr.Dataset]
 IN_UNITS_OF_RESPONSES = (
     "nodes_extrapolated",
     "nodes_fit_extrapolated",

@@ -7,14 +7,7 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.model.checks import (
-    Column,
-    column,
-    integer,
-    number,
-    one_of,
-    positive,
-)
+from impactlab.model.checks import Column, column, integer, number, one_of, positive
 
 NAN, INFINITE = float("nan"), float("inf")
 NOT_NUMBERS = [None, "1", True, NAN, INFINITE, -INFINITE, [1.0], 1j, np.array([1.0])]

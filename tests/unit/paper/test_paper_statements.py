@@ -1,7 +1,5 @@
 """Statements, judged on synthetic runs that confirm or refute them."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -19,7 +17,6 @@ from impactlab.paper.statements.statement import Ruling, Subject
 from impactlab.solver import outputs
 from impactlab.verification.solutions.stronge import stronge_impact
 
-Build = Callable[..., xr.Dataset]
 HOLDS, READING, FAILS, UNKNOWN = Ruling
 GRIDS = [301, 601, 1201]
 SPEEDS = [0.99, 5.0, 6.0, 7.0, 10.0, 15.0, 20.0]

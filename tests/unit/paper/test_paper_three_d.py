@@ -24,13 +24,7 @@ def witness(grid_runs):
     The force is a half sine of 0.2 ms, the beam's `late` s later.
     """
 
-    def build(
-        gap=0.01,
-        error=1e-4,
-        reach=1.5e-3,
-        late=0.0,
-        meshes=False,
-    ):
+    def build(gap=0.01, error=1e-4, reach=1.5e-3, late=0.0, meshes=False):
         def value(velocity, beam_model, nodes, element_size):
             solid = velocity * (1.0 + error * (element_size / 0.5e-3) ** 2)
             beam = velocity * (1.0 + gap) * (1.0 + 1e-5 * (600.0 / (nodes - 1.0)) ** 2)

@@ -1,12 +1,10 @@
 """Pages read back as a browser does."""
 
 import shutil
-from collections.abc import Callable
 from contextlib import contextmanager
 from html.parser import HTMLParser
 
 import pytest
-import xarray as xr
 
 from impactlab.figures.draw import draw_all
 from impactlab.files import read_netcdf, write_netcdf
@@ -70,9 +68,6 @@ class Page(HTMLParser):
     def named(self, tag):
         """Attributes of every element of a kind."""
         return [attrs for name, attrs in self.elements if name == tag]
-
-
-Report = Callable[[xr.Dataset, xr.Dataset], Page]
 
 
 @pytest.fixture

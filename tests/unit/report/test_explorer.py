@@ -82,8 +82,7 @@ def explorer(visit, folder):
 def move(page, name, share):
     """Move a slider to a share of its way."""
     page.locator(f"#{name}-slider").evaluate(
-        "(e, x) => { e.value = Math.round(e.max * x); e.dispatchEvent(new Event('input')) }",
-        share,
+        "(e, x) => { e.value = Math.round(e.max * x); e.dispatchEvent(new Event('input')) }", share
     )
 
 

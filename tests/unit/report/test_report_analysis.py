@@ -13,12 +13,6 @@ def _row(page, table, head):
     return next(row for row in page.tables[table] if row[0].startswith(head))
 
 
-def _list(page, start):
-    """The list item that starts so."""
-    at = page.text.index(start)
-    return str(page.text[at : at + 400])
-
-
 def test_verdicts_are_told_by_response(report, discretisation_study):
     runs, analysis = discretisation_study
     coarse = {"response": "peak_force", "points": runs["points"].min().item()}

@@ -22,7 +22,6 @@ pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)
-DURATION = 2e-3
 BITS = {name: bit for name, (bit, _) in STATUS_FLAGS.items()}
 
 

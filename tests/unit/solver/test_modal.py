@@ -10,13 +10,7 @@ from impactlab.solver.beam import make_grid
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.fibre_plasticity import make_plastic_state, plastic_energy
 from impactlab.solver.modal import bend_sections
-from impactlab.solver.modes import (
-    deflect,
-    make_modes,
-    modal_energy,
-    mode_curvature,
-    move_modes,
-)
+from impactlab.solver.modes import deflect, make_modes, modal_energy, mode_curvature, move_modes
 from impactlab.solver.section import FAR
 from impactlab.solver.stability import discretise, largest_time_step, stiffest_contact
 from impactlab.variables import STATUS_FLAGS

@@ -12,10 +12,7 @@ from impactlab.simulate import fibre_section
 from impactlab.solver import RULES
 from impactlab.solver.fibre_plasticity import plastic_energies
 from impactlab.solver.section import bend as bend_row
-from impactlab.solver.section import (
-    elastic_range,
-    return_mapping,
-)
+from impactlab.solver.section import elastic_range, return_mapping
 from impactlab.verification.solutions import quadrature
 
 HARDENINGS = [(0.0, 0.0), (5e9, 0.0), (0.0, 5e9), (2e9, 3e9)]

@@ -9,13 +9,7 @@ import pytest
 
 from impactlab.model.cost import memory, work
 from impactlab.study.design import design
-from impactlab.study.estimate import (
-    _PROGRAM,
-    A_SECOND,
-    MOST_TIME,
-    Estimate,
-    estimate,
-)
+from impactlab.study.estimate import _PROGRAM, A_SECOND, MOST_TIME, Estimate, estimate
 from impactlab.study.schema.readers import study_of_text
 from impactlab.study.solvers import solver_named
 

@@ -5,13 +5,7 @@ import pytest
 
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.inventory import (
-    Work,
-    file_stats,
-    open_answers,
-    removable_files,
-    status,
-)
+from impactlab.study.inventory import Work, file_stats, open_answers, removable_files, status
 from impactlab.study.store import OutputSpec, RunIndex, Shards, locked, shard_files
 
 OTHER_SOLVER = "belongs to another version of the solver, or another output"

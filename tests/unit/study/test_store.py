@@ -137,11 +137,7 @@ def test_one_shard_takes_the_place_of_all_small_ones(shards, monkeypatch, tmp_pa
     shards.merge()
     assert large in shard_files(shards.folder)
     assert len(shard_files(shards.folder)) == 2
-    assert found_keys(shards) == {
-        *first,
-        *second,
-        *run_keys(cases(2.0), OUTPUT, VERSION),
-    }
+    assert found_keys(shards) == {*first, *second, *run_keys(cases(2.0), OUTPUT, VERSION)}
     (merged,) = [part for part in shards.read() if part[0].size == 3]
     at = merged[0].tolist().index(first[0])
     assert merged[1]["peak_force"][at] == columns["peak_force"][0]

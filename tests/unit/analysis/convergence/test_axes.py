@@ -1,17 +1,13 @@
 """Verdicts on manufactured sequences along each axis, and what must never pass unnoticed."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
-import xarray as xr
 
 from impactlab.analysis.convergence import axes
 from impactlab.analysis.convergence.judgement import AxisVerdict, judge
 
 NODES = [51, 101, 201, 401, 801]
 SPACINGS = 1.0 / (np.array(NODES[::-1]) - 1.0)
-Build = Callable[..., xr.Dataset]
 
 
 def _h(nodes):

@@ -3,12 +3,7 @@
 import numpy as np
 import pytest
 
-from impactlab.analysis.convergence.judgement import (
-    AxisVerdict,
-    How,
-    judge,
-    numerical_uncertainty,
-)
+from impactlab.analysis.convergence.judgement import AxisVerdict, How, judge, numerical_uncertainty
 
 H = 2.0 ** np.arange(5)
 

@@ -1,16 +1,12 @@
 """Errors against the most points, the points needed, and the verdicts on them."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
-import xarray as xr
 
 from impactlab.analysis.analyse import analyse
 from impactlab.analysis.convergence import points as in_points
 
 POINTS = [2, 3, 5, 9, 17]
-Build = Callable[..., xr.Dataset]
 CASES = [
     # value at each number of points, points needed, verdict
     ([3.0, 1.5, 1.05, 1.002, 1.0], 9, "converged"),

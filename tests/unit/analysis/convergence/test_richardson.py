@@ -59,10 +59,7 @@ def test_nasa_table():
 
 @pytest.mark.parametrize(
     ("values", "spacings"),
-    [
-        ([6.063, 5.972, 5.863], _spacings(CELIK)),
-        ([0.97050, 0.96854, 0.96178], [1.0, 2.0, 4.0]),
-    ],
+    [([6.063, 5.972, 5.863], _spacings(CELIK)), ([0.97050, 0.96854, 0.96178], [1.0, 2.0, 4.0])],
 )
 def test_asymptotic_ratio_of_the_tables(values, spacings):
     """Celik's equation for p makes it f1/f2 on any ratios."""

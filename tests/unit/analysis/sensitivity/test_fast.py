@@ -1,16 +1,12 @@
 """Extended FAST against analytic indices, SALib's own numbers, and its floor."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
-import xarray as xr
 from SALib.analyze.fast import compute_orders
 
 import impactlab as il
 from impactlab.analysis import sensitivity
 
-Build = Callable[..., xr.Dataset]
 SETTINGS = {"curves": 16, "frequency": 33, "harmonics": 4}
 
 

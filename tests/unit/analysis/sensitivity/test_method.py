@@ -28,9 +28,6 @@ def test_chunks_change_nothing(monkeypatch):
     parts = list(method.counts(7, 20, np.random.default_rng(1)))
     assert [len(part) for part in parts] == [3] * 6 + [2]
     np.testing.assert_array_equal(np.concatenate(parts), whole)
-
-
-def test_more_rows_than_are_held_at_a_time(monkeypatch):
     monkeypatch.setattr(method, "_CELLS", 5)
     assert [len(part) for part in method.counts(7, 3, np.random.default_rng(1))] == [1, 1, 1]
 

@@ -1,19 +1,13 @@
 """Elementary effects of functions whose effects are known."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
-import xarray as xr
 from SALib.analyze import morris as salib
 from SALib.sample import morris as sampler
 from scipy.stats import norm
 
 from impactlab.analysis import sensitivity
-from impactlab.methods.morris import levels
 from impactlab.methods.runs import Sample
-
-Build = Callable[..., xr.Dataset]
 
 
 def _unit(size, groups=None, number=20):
@@ -56,11 +50,6 @@ def test_inputs_may_be_of_any_distribution(drawn):
     physical *= 1 + 1e-16 * np.random.default_rng(1).integers(-2, 3, size=unit.shape)
     runs = _runs(drawn, physical, unit @ [3.0, -2.0, 0.0])
     np.testing.assert_allclose(sensitivity.analysis(runs)["morris_mu"][0], [3, -2, 0], atol=1e-12)
-
-
-def test_levels_are_told_apart_on_a_large_offset():
-    column = np.array([[1e9], [1e9 + 1], [1e9 + 2], [1e9]])
-    assert levels(column)[:, 0].tolist() == [0, 1, 2, 0]
 
 
 def test_groups_have_no_sign(drawn):

@@ -1,18 +1,15 @@
 """The tidy table of every index, as CSV and as netCDF."""
 
 import csv
-from collections.abc import Callable
 
 import numpy as np
 import pytest
-import xarray as xr
 from SALib.sample import morris as morris_sampler
 
 from impactlab.analysis.analyse import analyse
 from impactlab.analysis.sensitivity.indices import sensitivity_variables, table_rows, write_csv
 from impactlab.methods.saltelli import saltelli
 
-Build = Callable[..., xr.Dataset]
 PROBLEM = {"num_vars": 3, "names": list("abc"), "bounds": [[0, 1]] * 3}
 
 

@@ -1,8 +1,5 @@
 """Verdicts on made-up cases, and the policies for failed runs."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -13,8 +10,6 @@ from impactlab.analysis.analyse import analyse
 from impactlab.methods import verdict
 from impactlab.methods.saltelli import saltelli
 
-Build = Callable[..., xr.Dataset]
-Read = Callable[..., Any]
 NAMES = ["x0", "x1", "x2"]
 BASE = 512
 
@@ -100,13 +95,6 @@ def _broken(drawn, unit, share, **attrs):
     gaps[np.random.default_rng(1).random(len(unit)) < share] = np.nan
     named = {"peak_force": gaps, "impulse": outputs}
     return drawn("sobol", unit, named, base_samples=BASE, second_order=1, **attrs)
-
-
-def test_failed_runs_leave_no_index(drawn, verdicts_of, unit):
-    found = sensitivity.analysis(_broken(drawn, unit, 0.02))
-    assert verdicts_of(found["sensitivity_verdict"]) == ["failed_runs", "usable"]
-    assert np.isnan(found["first_order"][0]).all()
-    assert found["imputed_share"].values.tolist() == [0, 0]
 
 
 def test_imputed_runs_are_marked(drawn, verdicts_of, unit):

@@ -35,13 +35,7 @@ def drawn_runs():
     With these ranges, the unit cube is linear in what the polynomials take.
     """
 
-    def build(
-        base_samples=64,
-        seed=0,
-        attrs=None,
-        ranges=RANGES,
-        **answers,
-    ):
+    def build(base_samples=64, seed=0, attrs=None, ranges=RANGES, **answers):
         problem = {"num_vars": 3, "names": list(ranges), "bounds": [[0, 1]] * 3}
         unit = sampler.sample(problem, base_samples, calc_second_order=True, seed=7)
         unit = np.clip(unit, 2.0**-31, 1 - 2.0**-31)

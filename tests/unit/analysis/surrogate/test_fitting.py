@@ -1,7 +1,5 @@
 """Samples as points of the unit cube, and fits: exact for polynomials, sparse, repeatable."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -14,8 +12,6 @@ from impactlab.analysis.surrogate.chaos import MOST_RUNS, basis, drawn, fit
 from impactlab.analysis.surrogate.from_runs import Divided
 
 from .conftest import UNIT
-
-Build = Callable[..., xr.Dataset]
 
 
 def first(unit):

@@ -1,18 +1,13 @@
 """Surrogates of whole samples: Ishigami's indices, and what must not pass in silence."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
-import xarray as xr
 
 from impactlab.analysis import ANALYSES
 from impactlab.analysis.analyse import analyse
 from impactlab.analysis.surrogate import analysis, applies
 
 from .conftest import ishigami
-
-Build = Callable[..., xr.Dataset]
 
 
 def smooth(unit):

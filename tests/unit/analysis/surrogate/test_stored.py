@@ -1,7 +1,6 @@
 """surrogate.nc: what comes back is what was fitted, and refuses what it does not know."""
 
 import sys
-from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -15,8 +14,6 @@ from impactlab.methods.distributions import distribution_of
 from impactlab.report.console import print_predictions
 
 from .conftest import RANGES, ishigami
-
-Build = Callable[..., xr.Dataset]
 
 
 def force(unit):

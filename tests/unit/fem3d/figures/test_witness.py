@@ -46,10 +46,7 @@ def test_the_figure_has_values_above_and_differences_below(study):
 def test_the_data_of_the_figure_are_its_numbers(study):
     """Differences in % with their bars, at the velocities themselves."""
     below = [one for one in drawn(FIGURES["witness"].plot(*study)) if "Δ" in one.panel]
-    assert [one.panel for one in below[::2]] == [
-        "Δ peak force",
-        "Δ contact duration",
-    ]
+    assert [one.panel for one in below[::2]] == ["Δ peak force", "Δ contact duration"]
     assert {one.y_label for one in below} == {"Difference from the 3-D FE model (%)"}
     for one in below:
         assert one.x == pytest.approx(SPEEDS)

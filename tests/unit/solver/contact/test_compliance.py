@@ -185,11 +185,7 @@ def test_another_shear_coefficient_moves_only_its_own_deflection():
     assert np.diff(gammas) * moment == pytest.approx(-np.diff(deflections), rel=1e-9)
 
 
-WIDE = replace(
-    TIMOSHENKO,
-    beam=replace(TIMOSHENKO.beam, depth=0.015),
-    contact_compliance="strip",
-)
+WIDE = replace(TIMOSHENKO, beam=replace(TIMOSHENKO.beam, depth=0.015), contact_compliance="strip")
 
 
 def test_a_strip_takes_over_what_it_does_in_statics():

@@ -11,8 +11,6 @@ from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import flatten
 from impactlab.study.design import design
 
-UNIFORM = {"distribution": "uniform", "low": 1, "high": 2}
-
 
 def test_more_runs_than_possible_are_refused(refused, grid, sample):
     many = {"start": 1, "stop": 2, "number": 10_000}
