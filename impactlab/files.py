@@ -6,11 +6,12 @@ when they are read into memory, and the digests of what it was made from.
 
 from __future__ import annotations
 
+import csv
 import json
 import math
 import os
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from hashlib import blake2b
@@ -73,6 +74,20 @@ def replaced(path: Path, size: int = 0) -> Iterator[Path]:
         raise OSError(message) from error
     finally:
         unfinished.unlink(missing_ok=True)
+
+
+def write_csv(
+    rows: Iterable[Mapping[str, Any]], columns: Sequence[str], path: Path, size: int = 0
+) -> None:
+    """Write these columns of rows to `path` in UTF-8, all or nothing (see `replaced`).
+
+    NaN, and what a row lacks, are empty cells.
+    """
+    with replaced(path, size) as whole, whole.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, columns, extrasaction="ignore", lineterminator="\n")
+        writer.writeheader()
+        for row in rows:
+            writer.writerow({key: "" if cell != cell else cell for key, cell in row.items()})
 
 
 def unfinished_files(folder: Path) -> list[Path]:

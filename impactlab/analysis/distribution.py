@@ -12,10 +12,8 @@ that answered; distribution_verdict says where these differ from the others in a
 
 from __future__ import annotations
 
-import csv
 import warnings
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -282,18 +280,8 @@ def cumulative(outputs: Floats, level: float) -> tuple[Floats, Floats, Floats, F
     return values, below / answered, np.clip(low, 0.0, 1.0), np.clip(high, 0.0, 1.0)
 
 
-COLUMNS = (
-    "response",
-    "quantity",
-    "at",
-    "value",
-    "low",
-    "high",
-    "units",
-    "draws",
-    "missing",
-    "verdict",
-)
+_NUMBER = ("quantity", "at", "value", "low", "high", "units")
+COLUMNS = ("response", *_NUMBER, "draws", "missing", "verdict")
 """Of the table. at: probability, limit or parameter. low, high: ends of the interval."""
 
 
@@ -301,43 +289,32 @@ def table_rows(analysis: xr.Dataset) -> Iterator[dict[str, Any]]:
     """Yield every number of the distributions by COLUMNS, NaN where there is none."""
     for name in analysis["response"].values.tolist() if "quantile" in analysis else ():
         entry = analysis.sel(response=name)
-        row: dict[str, Any] = {
+        row = {
             "response": name,
             "draws": int(entry["number_of_draws"]),
             "missing": int(entry["missing_draws"]),
             "verdict": names(DistributionVerdict)[int(entry["distribution_verdict"])],
         }
-        dimensional = row | {"units": str(entry["response_units"].item())}
-        for key in ("mean", "standard_deviation"):
-            value, margin = float(entry[key]), float(entry[f"{key}_interval"])
-            ends = {"low": value - margin, "high": value + margin}
-            yield dimensional | {"quantity": key, "at": "", "value": value} | ends
-        for probability in entry["probability"].values.tolist():
-            keys = {"value": "quantile", "low": "quantile_low", "high": "quantile_high"}
-            values = {
-                key: float(entry[variable].sel(probability=probability))
-                for key, variable in keys.items()
-            }
-            yield dimensional | {"quantity": "quantile", "at": probability} | values
-        if "limit" not in entry or np.isnan(entry["limit"]):
-            continue
-        row |= {"units": "1"}
-        keys = {f"exceedance_{key}": "" for key in ("probability", "if_none", "if_all")}
-        for key in keys:
-            ends = {}
-            if key == "exceedance_probability":
-                ends = {end: float(entry[f"exceedance_{end}"]) for end in ("low", "high")}
-            limit = {"at": float(entry["limit"]), "value": float(entry[key])}
-            yield row | {"quantity": key} | limit | ends
-        for key in ("exceedance_distance", "exceedance_direction", "exceedance_p_value"):
-            for parameter, value in entry[key].to_series().items():
-                yield row | {"quantity": key, "at": parameter, "value": value}
+        for numbers in _numbers(entry):
+            yield row | dict(zip(_NUMBER, numbers, strict=True))
 
 
-def write_csv(analysis: xr.Dataset, path: Path) -> None:
-    """Write the rows under their names, in UTF-8; missing values are empty cells."""
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        for row in table_rows(analysis):
-            writer.writerow({key: "" if cell != cell else cell for key, cell in row.items()})
+def _numbers(entry: xr.Dataset) -> Iterator[tuple[Any, ...]]:
+    """Yield every number of one response, as the columns _NUMBER."""
+    units = str(entry["response_units"].item())
+    for key in ("mean", "standard_deviation"):
+        value, margin = float(entry[key]), float(entry[f"{key}_interval"])
+        yield key, "", value, value - margin, value + margin, units
+    columns = ("probability", "quantile", "quantile_low", "quantile_high")
+    for numbers in zip(*(entry[column].values.tolist() for column in columns), strict=True):
+        yield "quantile", *numbers, units
+    if "limit" not in entry or np.isnan(limit := float(entry["limit"])):
+        return
+    low, high = float(entry["exceedance_low"]), float(entry["exceedance_high"])
+    probability = float(entry["exceedance_probability"])
+    yield "exceedance_probability", limit, probability, low, high, "1"
+    for key in ("exceedance_if_none", "exceedance_if_all"):
+        yield key, limit, float(entry[key]), np.nan, np.nan, "1"
+    for key in ("exceedance_distance", "exceedance_direction", "exceedance_p_value"):
+        for parameter, value in entry[key].to_series().items():
+            yield key, parameter, value, np.nan, np.nan, "1"

@@ -23,7 +23,7 @@ from impactlab.files import (
     identity,
     opened,
     read_netcdf,
-    replaced,
+    write_csv,
     write_netcdf,
 )
 from impactlab.study import CALIBRATION, REFINEMENT, RESOLUTION, SHARDS, TRIALS
@@ -282,7 +282,7 @@ def analyse_runs(
     from impactlab.analysis import distribution
     from impactlab.analysis.analyse import analyse
     from impactlab.analysis.measurements import compared
-    from impactlab.analysis.sensitivity.indices import sensitivity_variables, write_csv
+    from impactlab.analysis.sensitivity.indices import COLUMNS, sensitivity_variables, table_rows
     from impactlab.analysis.surrogate import packed
     from impactlab.methods.runs import listed
     from impactlab.study.schema.measurement_files import read_measurements
@@ -304,12 +304,12 @@ def analyse_runs(
         for name in ("indices.csv", "indices.nc", "distribution.csv", "surrogate.nc"):
             path.with_name(name).unlink(missing_ok=True)  # perhaps another study's
         if indices := sensitivity_variables(analysis):
-            with replaced(path.with_name("indices.csv"), indices.nbytes) as unfinished:
-                write_csv(analysis, unfinished)
+            table = path.with_name("indices.csv")
+            write_csv(table_rows(analysis), COLUMNS, table, indices.nbytes)
             write_netcdf(indices, path.with_name("indices.nc"), "indices", *sources)
         if "quantile" in analysis:
-            with replaced(path.with_name("distribution.csv")) as unfinished:
-                distribution.write_csv(analysis, unfinished)
+            numbers, table = distribution.table_rows(analysis), path.with_name("distribution.csv")
+            write_csv(numbers, distribution.COLUMNS, table)
         if surrogates := packed(solved, analysis):
             write_netcdf(surrogates, path.with_name("surrogate.nc"), "surrogate", *sources)
     return analysis

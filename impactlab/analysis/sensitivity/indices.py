@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -187,13 +185,3 @@ def table_rows(analysis: xr.Dataset) -> Iterator[dict[str, Any]]:
                 order.index(row["parameter"]) < order.index(row["other_parameter"])
             ):
                 yield {"index": name} | row
-
-
-def write_csv(analysis: xr.Dataset, path: Path) -> None:
-    """Write the rows under their names, in UTF-8; missing values are empty cells."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
-        writer.writeheader()
-        for row in table_rows(analysis):
-            writer.writerow({key: "" if cell != cell else cell for key, cell in row.items()})

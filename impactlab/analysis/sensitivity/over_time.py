@@ -98,7 +98,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     variables: dict[str, Any] = {}
     for place, (order, (label, source)) in enumerate(_ORDERS.items()):
         at_time, of_all = f"{label} Sobol index at each time", f"generalised {label} Sobol index"
-        for name, key, dims, long_name, estimator in (
+        for name, key, along, long_name, estimator in (
             (f"{order}_over_time", "over_time", ("time",), at_time, source),
             (f"generalised_{order}", "generalised", (), of_all, f"{_2014}; {source}"),
         ):
@@ -107,7 +107,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
             margin = attrs | {"long_name": width, "confidence": sample.confidence}
             for ending, about in (("", attrs), ("_interval", margin)):
                 column = values[f"{key}{ending}"][..., place, :]
-                variables[f"{name}{ending}"] = ("history", *dims, "parameter"), column, about
+                variables[f"{name}{ending}"] = ("history", *along, "parameter"), column, about
     for name, (dims, attrs) in _BESIDE.items():
         variables[name] = dims, values[name], attrs
     dataset = xr.Dataset(variables, coordinates)

@@ -9,12 +9,14 @@ import xarray as xr
 
 from impactlab.analysis.analyse import analyse
 from impactlab.analysis.distribution import (
+    COLUMNS,
     PROBABILITIES,
     analysis,
     cumulative,
     drawn_outputs,
-    write_csv,
+    table_rows,
 )
+from impactlab.files import write_csv
 from impactlab.methods import NO_DISTRIBUTION, independent_runs
 from impactlab.methods.runs import Sample
 from impactlab.methods.saltelli import saltelli
@@ -163,7 +165,7 @@ def test_the_table_has_every_number(tmp_path):
     x = random.normal(size=200)
     runs = runs_of({"x": x, "z": random.normal(size=200)}, {"y": x, "w": -x}, {"y": 1.0})
     found = analyse(runs)
-    write_csv(found, tmp_path / "distribution.csv")
+    write_csv(table_rows(found), COLUMNS, tmp_path / "distribution.csv")
     with (tmp_path / "distribution.csv").open(newline="", encoding="utf-8") as file:
         rows = {(row["response"], row["quantity"], row["at"]): row for row in csv.DictReader(file)}
     assert len(rows) == 2 * (2 + len(PROBABILITIES)) + 3 + 3 * 2
@@ -186,7 +188,7 @@ def test_draws_missing_at_some_values_of_a_parameter_carry_a_warning(where, shar
         found = analysis(runs_of({"x": x, "other": other}, {"y": np.where(failed, np.nan, x)}))
         verdicts.append(found["distribution_verdict"].item())
     assert np.mean(np.array(verdicts) == 2) == pytest.approx(share, abs=0.1)
-    write_csv(found, tmp_path / "distribution.csv")
+    write_csv(table_rows(found), COLUMNS, tmp_path / "distribution.csv")
     with (tmp_path / "distribution.csv").open(encoding="utf-8") as file:
         written = {row["verdict"] for row in csv.DictReader(file)}
     assert written == {"selected" if where == "upper end" else "missing"}

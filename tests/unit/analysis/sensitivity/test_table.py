@@ -7,7 +7,8 @@ import pytest
 from SALib.sample import morris as morris_sampler
 
 from impactlab.analysis.analyse import analyse
-from impactlab.analysis.sensitivity.indices import sensitivity_variables, table_rows, write_csv
+from impactlab.analysis.sensitivity.indices import COLUMNS, sensitivity_variables, table_rows
+from impactlab.files import write_csv
 from impactlab.methods.saltelli import saltelli
 
 PROBLEM = {"num_vars": 3, "names": list("abc"), "bounds": [[0, 1]] * 3}
@@ -24,7 +25,7 @@ def found(drawn, ishigami):
 
 
 def test_every_index_has_a_row(found, tmp_path):
-    write_csv(found, tmp_path / "new" / "indices.csv")
+    write_csv(table_rows(found), COLUMNS, tmp_path / "new" / "indices.csv")
     with (tmp_path / "new" / "indices.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     # of two responses: 3 + 3 indices, 3 pairs, 4 sizes of 3 + 3, a correlation and its noise
@@ -57,7 +58,7 @@ def test_pairs_once_and_sizes(found):
 
 
 def test_what_is_not_given_is_an_empty_cell(found, tmp_path):
-    write_csv(found, tmp_path / "indices.csv")
+    write_csv(table_rows(found), COLUMNS, tmp_path / "indices.csv")
     lines = (tmp_path / "indices.csv").read_text("utf-8").splitlines()
     assert "impulse,x0,,,first_order,,,,1,failed_runs" in lines
 
