@@ -30,6 +30,7 @@ _STEPS: dict[str, tuple[tuple[float, float, str], ...]] = {
     "m s-1": ((0.0, 1.0, "m/s"),),
     "m s-2": ((0.0, 1.0, "m/s²"),),
     "m-1": ((0.0, 1.0, "1/m"),),
+    "s-1": ((0.0, 1.0, "1/s"),),
     "N m": ((1e3, 1e-3, "kN m"), (0.0, 1.0, "N m")),
     "kg m-3": ((0.0, 1.0, "kg/m³"),),
     "1": ((0.0, 1.0, ""),),
@@ -162,15 +163,16 @@ def span(values: Floats, digits: int) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def values(coordinate: xr.DataArray, where: Iterable[int]) -> list[str]:
+def values(coordinate: xr.DataArray, where: Iterable[int], *, short: bool = False) -> list[str]:
     """Return the values at these positions as text, in the display unit, without its symbol.
 
-    Words of study files are spelt as in papers; contact laws have their titles.
+    Words of study files are spelt as in papers; contact laws have their titles, or short names.
     """
     if coordinate.dtype.kind in "if":
         shown = np.ravel(display(coordinate)(coordinate.values))
         return [number(float(shown[position])) for position in where]
-    return [_spelled(coordinate, str(coordinate.values.flat[position])) for position in where]
+    words = [str(coordinate.values.flat[position]) for position in where]
+    return [_spelled(coordinate, word, short=short) for word in words]
 
 
 def _spelled(coordinate: xr.DataArray, word: str, *, short: bool = False) -> str:

@@ -1,4 +1,4 @@
-"""The answer to a study's question: at most five lines, in numbers."""
+"""The answer to a study's question: a headline, and at most four lines, in numbers."""
 
 from __future__ import annotations
 
@@ -10,33 +10,22 @@ import xarray as xr
 
 from impactlab.analysis.analyse import analyse
 from impactlab.figures import access, labels, measures
-from impactlab.figures.access import design_dims, responses, usable
+from impactlab.figures.access import design_dims, is_sample, responses
 from impactlab.figures.distributions import spread_evenly
-from impactlab.figures.labels import display
-from impactlab.figures.measures import MORRIS, SOBOL, Index, analysed
+from impactlab.figures.measures import analysed
 from impactlab.figures.needs import ORDERED, Needs, needed
 from impactlab.methods.record import Family
-from impactlab.report import measured
-from impactlab.report.cautions import beside
+from impactlab.model.parameters import PARAMETERS
+from impactlab.report import effects, measured, ranking
 from impactlab.report.distribution import limit_entries
-from impactlab.report.regimes import jump_entries, regime_entries
-from impactlab.report.sensitivity import (
-    history_entries,
-    in_units,
-    share,
-    shared,
-    uncertainty,
-    with_margin,
-)
+from impactlab.report.regimes import regime_entries
+from impactlab.report.sensitivity import history_entries, shared, uncertainty
 from impactlab.verdicts import TOLERANCE
 from impactlab.verification.finding import gravest_first
 from impactlab.verification.outcomes import unpacked
 
 LINES = 5
-_LIMITS = 2  # lines that limits may take of these
-_MATTERS = 0.01  # smallest share of the largest index that is named
-_INTERACTS = 0.02  # smallest share of the variance from interactions that is told
-_NOTHING = 1e-4  # share of the largest magnitude below which an end of a range is round-off
+"""Most lines of an answer, the headline among them."""
 _MINOR = (
     "time_of_peak_force",
     "number_of_contacts",
@@ -49,11 +38,11 @@ _MINOR = (
 """Responses that long answers leave to the tables."""
 
 Entry = tuple[str, str]
-"""What is told of, and what was found."""
+"""Subject and finding."""
 
 
 def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
-    """Return the findings of a study in at most five lines, the main finding first.
+    """Return the findings of a study in at most five lines, the headline first.
 
     Parameters
     ----------
@@ -75,210 +64,147 @@ def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
     >>> runs = study.run(workers=1)
     >>> for line in il.answers(runs, il.analyse(runs)):
     ...     print(line)
-    Value (usable): x1 ...
+    The x1 (... %) and the x2 (... %) cause most of the scatter of the value.
     """
     if analysis is None and runs.attrs.get("content") != "findings":
         analysis = analyse(runs)
-    lines, _ = entries(runs, analysis)
-    sentences = ["; ".join(": ".join(entry) for entry in line) + "." for line in lines]
-    if sentences and (correlated := shared(runs)):
+    headline, lines, _ = entries(runs, analysis)
+    sentences = ["; ".join(": ".join(entry) for entry in line) for line in lines]
+    sentences = [f"{text}." for text in [headline, *sentences]]
+    if analysis is not None and (correlated := shared(runs)):
         sentences[0] += f" {correlated}"
-    return sentences or ["There is no answer in these runs."]
+    return sentences
 
 
-def entries(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> tuple[list[list[Entry]], str]:
-    """Return the entries of each line of `answers`, and what their numbers are."""
+def entries(runs: xr.Dataset, analysis: xr.Dataset | None) -> tuple[str, list[list[Entry]], str]:
+    """Return the headline of an answer, the entries of its other lines, and a note on the numbers.
+
+    The headline is a sentence without its full stop.
+    """
     if analysis is None:
-        return _packed(_verification(runs), LINES), ""
+        headline, findings = _verification(runs)
+        return headline, [[entry] for entry in findings[: LINES - 1]], ""
+    shown = [name for name in responses(runs) if name != "energy_error"] or responses(runs)
+    if not shown:
+        return "There is no answer in these runs", [], ""
     if (families := measures.families(runs, analysis)) and analysed(runs, analysis):
-        findings = _ranking(runs, analysis, families[0])
-        kind = families[0].ranked_by(analysis).label
-        note = f"{families[0].title}, {kind}, ± the half-width of the"
-        note += f" {access.confidence(analysis)} interval. {shared(runs)}".rstrip()
-    elif needs := needed(runs, analysis):
-        findings = _convergence(needs)
+        headline, findings, note = _of_sample(runs, analysis, families)
+    elif (needs := needed(runs, analysis)) and not _effects_lead(runs):
+        headline, findings = _convergence(needs, _asked(runs, [*needs.errors]))
         note = "± the difference to the finest grid and the numerical uncertainty of that grid."
     else:
-        findings = _ranges(runs, analysis)
-        note = (
-            "Variation: the variance over the grid; a parameter explains that of its mean effect."
-        )
-        if "nodes" in runs.coords and "numerical_uncertainty" not in analysis:
-            note += " The numerical uncertainty is not known: impactlab recommend measures it."
+        headline, findings, note = _of_grid(runs, analysis, shown, needs)
+    first: list[Entry] = []
     if limits := limit_entries(runs, analysis):
         level, even = access.confidence(analysis), spread_evenly(runs)
         note = f"Above a limit: probability and its {level} interval{even}. {note}"
-    first = _packed([*regime_entries(runs), *jump_entries(runs)], 1) + _packed(limits, _LIMITS)
+        first, headline = [("Sensitivity", headline), *limits[1:]], ": ".join(limits[0])
+    first += regime_entries(runs)
     last = measured.entries(analysis)
     if over := history_entries(analysis):
         note += " Over time: generalised total order, of the variance added up over all times."
-    room = LINES - len(first) - bool(last)
-    histories = _packed(over, 2 if room >= len(findings) + len(over) else 1)
-    lines = [*first, *_packed(findings, room - len(histories)), *histories]
-    return [*lines, last] if last else lines, note
+    room = LINES - 1 - bool(last)
+    before, after = _packed(first, 2), _packed(over, 1 if findings or first else 2)
+    lines = [*before, *_packed(findings, room - len(before) - len(after)), *after]
+    return headline, [*lines, last] if last else lines, note
+
+
+def _asked(runs: xr.Dataset, names: list[str]) -> str:
+    """Return the response that the study's title names first, or else the first one."""
+    title = str(runs.attrs.get("title", "")).lower()
+    named = [name for name in names if labels.response(name).lower() in title]
+    return min(named, key=lambda name: title.index(labels.response(name).lower()), default=names[0])
+
+
+def _effects_lead(runs: xr.Dataset) -> bool:
+    """Return whether a grid has more values of the impact than of the discretisation."""
+    dims = design_dims(runs)
+    of_impact = [
+        dim for dim in dims if dim not in PARAMETERS or PARAMETERS[dim].path[0] == "impact"
+    ]
+    further = [runs.sizes[dim] for dim in dims if dim not in of_impact]
+    return bool(np.prod([runs.sizes[dim] for dim in of_impact]) > np.prod(further))
+
+
+def _of_sample(
+    runs: xr.Dataset, analysis: xr.Dataset, families: list[Family]
+) -> tuple[str, list[Entry], str]:
+    """Return headline, further entries and note of a sample with sensitivity indices."""
+    family, names = families[0], analysed(runs, analysis)
+    sound = [name for name in names if ranking.sound(analysis, name)]
+    doubtful = ranking.unusable(runs, analysis)
+    note = f"{family.title}, {family.ranked_by(analysis).label}, ± the half-width of the"
+    note += f" {access.confidence(analysis)} interval. {shared(runs)}".rstrip()
+    if not sound:
+        return "No sensitivity index of this study is usable", doubtful, note
+    lead = _asked(runs, sound)
+    headline = ranking.headline(runs, analysis, family, lead)
+    others = [name for name in sound if name != lead]
+    findings = ranking.entries(runs, analysis, family, others)
+    return headline, [*findings, *ranking.without_effect(analysis, family, sound), *doubtful], note
+
+
+def _of_grid(
+    runs: xr.Dataset, analysis: xr.Dataset, shown: list[str], needs: Needs | None
+) -> tuple[str, list[Entry], str]:
+    """Return headline, further entries and note of a grid: the effects of its parameters."""
+    lead, note, findings = _asked(runs, shown), "", list[Entry]()
+    if is_sample(runs):
+        return effects.spread(runs, lead), effects.ranges(runs, [n for n in shown if n != lead]), ""
+    if len(shown) > 2 * LINES:
+        shown = [name for name in shown if name not in _MINOR or name == lead]
+    if needs is not None:
+        findings = [("Convergence", _convergence(needs, lead)[0])]
+        runs = needs.runs.isel({axis: [0] for axis in needs.axes})
+        note = "Effects are those on the finest grid."
+    elif "nodes" in runs.coords and "numerical_uncertainty" not in analysis:
+        note = "The numerical uncertainty is not known: impactlab recommend measures it."
+    headline = effects.headline(runs, lead)
+    return headline, [*effects.entries(runs, analysis, lead, shown), *findings], note
 
 
 def _packed(findings: list[Entry], lines: int) -> list[list[Entry]]:
-    size = max(1, -(-len(findings) // lines))  # entries per line
+    size = max(1, -(-len(findings) // max(1, lines)))  # entries per line
     return [findings[first : first + size] for first in range(0, len(findings), size)]
 
 
-def _verification(stored: xr.Dataset) -> list[Entry]:
+def _verification(stored: xr.Dataset) -> tuple[str, list[Entry]]:
+    """Return headline and further entries of a verification: failures, or the closest calls."""
     outcomes = gravest_first(unpacked(stored))
     total = sum(len(outcome.finding.comparisons) for outcome in outcomes)
     bad = [outcome for outcome in outcomes if outcome.verdict != "passed"]
     size = f"{labels.counted(total, 'comparison')} of {labels.counted(len(outcomes), 'check')}"
-    findings = [("Passed", f"all {size} are within their tolerance")]
+    headline = f"All {size} are within their tolerance"
     if bad or not outcomes:
         failed = sum(len(outcome.failures) for outcome in outcomes)
-        findings = [("Failed", f"{failed} of {size}; {len(bad)} did not pass")]
+        checks = f"{labels.counted(len(bad), 'check')} did not pass"
+        headline = f"{checks}: {failed} of {size} are not within their tolerance"
     closest = sorted(outcomes, key=lambda outcome: -(outcome.worst.ratio if outcome.worst else 0))
-    for outcome in (bad or closest)[: LINES - 1]:
+    findings = []
+    for outcome in bad or closest:
         worst, text = outcome.worst, outcome.reason or "it compared nothing"
         if worst and not outcome.reason:
-            many = (
-                f"{labels.percent(worst.ratio)} of"
-                if isfinite(worst.ratio)
-                else "infinitely many times"
-            )
-            text = f"largest error {many} its tolerance"
-            text += f", {worst.quantity}, {worst.where}"
+            share = labels.percent(worst.ratio) if isfinite(worst.ratio) else "infinitely much"
+            text = f"uses {share} of its tolerance ({worst.quantity}, {worst.where})"
         findings.append((outcome.title, text))
-    return findings
+    if not bad and findings:
+        headline += f"; the closest call, “{findings[0][0]}”, {findings[0][1]}"
+        findings = findings[1:]
+    return headline, findings
 
 
-def _ranking(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Entry]:
-    """Return one entry per response: the parameters that matter, and whether to trust this."""
-    names, shown = measures.parameters(analysis), analysed(runs, analysis)
-    most = max(1, 4 - -(-len(shown) // LINES))  # named per response
-    measure = family.ranked_by(analysis).name
-    findings: list[Entry] = []
-    for name in shown:
-        index = measures.index(analysis, measure, name)
-        sizes = np.where(index.above_noise, np.abs(index.values), 0.0)
-        listed: list[str] = []
-        for number in np.argsort(-sizes, kind="stable")[:most].tolist():
-            share_of = "" if findings or listed else " of the variance"
-            text = _written(runs, analysis, family, index, name, number, share_of)
-            if not listed:
-                text += _of_words(runs, names[number], name)
-            if sizes[number] > _MATTERS * sizes.max():
-                listed.append(f"{labels.parameter(names[number])} {text}")
-        if listed and family.explained in analysis:
-            fit = float(analysis[family.explained].sel(response=name))
-            listed[-1] += f" (R² of the fit: {labels.number(fit, 2)})"
-        verdict = access.verdict(analysis, "sensitivity_verdict", name)
-        if verdict and verdict.flag == "several_regimes":
-            continue  # the first line is about them
-        subject = labels.sentence(labels.response(name))
-        none = "no parameter stands out from the noise"
-        if not np.isfinite(index.values).any():
-            none = "no index is defined"
-        summary = ", ".join(listed) or none
-        if gaps := int(access.absent(runs, name).sum()):
-            summary += f" ({gaps:,} of {labels.counted(access.count(runs), 'run')} missing)"
-        findings.append((f"{subject} ({verdict.words})" if verdict else subject, summary))
-    return findings
+def _convergence(needs: Needs, lead: str) -> tuple[str, list[Entry]]:
+    """Return headline and further entries: the grids that keep responses within tolerance.
 
-
-def _of_words(runs: xr.Dataset, parameter: str, response: str) -> str:
-    """Return which words give the least and the largest mean response; "" for numbers."""
-    listed = labels.words(runs[parameter]) if parameter in runs.coords else []
-    if not listed:
-        return ""
-    means = access.means_by_word(runs, parameter, response).values()
-    intervals = [
-        (interval, word)
-        for word, interval in zip(listed, means, strict=True)
-        if interval[0] == interval[0]
-    ]
-    low, high = (
-        f"{in_units(runs[response], *interval)} with {word}"
-        for interval, word in (min(intervals), max(intervals))
-    )
-    return f" (on average {low} to {high})"
-
-
-def _written(
-    runs: xr.Dataset,
-    analysis: xr.Dataset,
-    family: Family,
-    index: Index,
-    name: str,
-    number: int,
-    share_of: str,
-) -> str:
-    """Return an index with its interval, and of a Sobol index what the parameter does alone.
-
-    share_of: follows a share of the variance, which the first one of an answer names.
+    lead: the response that the headline is about, where a grid keeps it within tolerance.
     """
-    value, margin = float(index.values[number]), float(index.margins[number])
-    text = with_margin(value, margin)
-    if family is MORRIS:
-        text = in_units(runs[name], value, margin)
-    elif family is SOBOL:
-        text = share(value, margin, float(index.numerical[number])) + share_of
-        first = measures.index(analysis, "first_order", name)
-        surplus = value - first.values[number]  # none where the first order ranks
-        reach = margin + first.margins[number] + index.numerical[number] + first.numerical[number]
-        if surplus > max(_INTERACTS, reach):
-            text += f", {max(0.0, 100 * first.values[number]):.0f} % alone"
-    if index.numerically_lost[number]:
-        text += ", which the numerical error may explain"
-    return text
-
-
-def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> list[Entry]:
-    """Return one entry per parameter that drives responses: the range of each of these."""
-    drives: dict[str, list[tuple[float, str]]] = defaultdict(list)
-    shown = [name for name in responses(runs) if name != "energy_error"] or responses(runs)
-    if len(shown) > 2 * LINES:
-        shown = [name for name in shown if name not in _MINOR]
-    for name in shown:
-        array, unit = usable(runs, name), display(runs[name])
-        array = array.where(np.isfinite(array))
-        text = f"{labels.response(name)} "
-        if array.isnull().all():
-            drives["Missing in every run"].append((np.nan, text.strip()))
-            continue
-        numbers = unit(array.values[np.isfinite(array.values)])
-        numbers[np.abs(numbers) < _NOTHING * np.abs(numbers).max()] = 0.0
-        text += labels.span(numbers, 3) + labels.unit(runs[name])
-        if "numerical_uncertainty" in analysis and access.known(analysis, name):
-            error = float(analysis["numerical_uncertainty"].sel(response=name))
-            text += f" (numerically {uncertainty(error)})"
-        gaps = int(array.isnull().sum())
-        doubts = [f"{gaps} missing" if gaps else "", beside(runs, analysis, name)]
-        if any(doubts):
-            text += f" ({'; '.join(filter(None, doubts))})"
-        effects = {
-            labels.parameter(dim): float(array.mean(set(array.dims) - {dim}).var() / array.var())
-            for dim in design_dims(runs, array.dims)
-            if array.sizes[dim] > 1 and array.max() > array.min()
-        }
-        driver = max(effects, key=effects.__getitem__, default="the same in every run")
-        if effects and effects[driver] < 0.5:
-            driver = "several parameters together"
-        drives[driver].append((effects.get(driver, np.nan), text))
-    findings, left = [], len(responses(runs)) - len(shown)
-    for driver, texts in sorted(drives.items(), key=lambda item: -len(item[1])):
-        shares, subject = np.array([effect for effect, _ in texts]), labels.sentence(driver)
-        if (shares >= 0.5).all() and len(design_dims(runs)) > 1:
-            subject += f" explains {labels.span(100 * shares, 2)} % of the variation"
-        findings.append((subject, ", ".join(text for _, text in texts)))
-    if left:
-        subject, text = findings.pop()
-        findings.append((subject, f"{text}; {labels.counted(left, 'other response')} below"))
-    return findings
-
-
-def _convergence(needs: Needs) -> list[Entry]:
-    """Return one entry per grid that keeps responses within tolerance, and those without any."""
     groups: dict[tuple[int, ...], list[str]] = defaultdict(list)
     for name, need in needs.grids.items():
         groups[need].append(name)
-    findings = []
-    for need, names in sorted(groups.items(), key=lambda item: -len(item[1])):
+    ordered = sorted(groups.items(), key=lambda item: (lead not in item[1], -len(item[1])))
+    tolerance, findings = labels.percent(TOLERANCE), list[Entry]()
+    headline = f"No response is within {tolerance} on any grid of this study"
+    for need, names in ordered:
         remarks = [uncertainty(max(float(needs.errors[name][need]) for name in names))]
         for axis in (ORDERED[dim] for dim in needs.axes if dim in ORDERED):
             judged = needs.analysis.sel(response=names)
@@ -288,12 +214,19 @@ def _convergence(needs: Needs) -> list[Entry]:
                 order = labels.span(orders[np.isfinite(orders)], 2)
                 remarks.append(f"observed order {order} in the {axis.replace('_', ' ')}")
         listed = labels.listing([labels.response(name) for name in names])
-        head = f"Within {labels.percent(TOLERANCE)} from {needs.words(need)}"
-        findings.append((head, f"{listed} ({', '.join(remarks)})"))
+        if not findings and headline.startswith("No"):
+            verb = "is" if len(names) == 1 else "are"
+            headline = f"With {needs.words(need)}, and on finer grids, the {listed} {verb} "
+            headline += f"within {tolerance} ({', '.join(remarks)})"
+        else:
+            head = f"Within {tolerance} from {needs.words(need)}"
+            findings.append((head, f"{listed} ({', '.join(remarks)})"))
     beyond = []
     for name in [name for name in needs.errors if name not in needs.grids]:
         error = float(needs.errors[name].min())
         remarks = [uncertainty(error)] if error < 1 else []
         remarks += needs.doubts(name)
         beyond.append(f"{labels.response(name)} ({', '.join(remarks)})")
-    return findings + ([("On no grid of this study", labels.listing(beyond))] if beyond else [])
+    if beyond:
+        findings.append(("On no grid of this study", labels.listing(beyond)))
+    return headline, findings

@@ -52,7 +52,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
     figure is missing, OSError when `path` cannot be written.
     """
     sections = _sections(runs, analysis)
-    answer, note = entries(runs, analysis)
+    headline, answer, note = entries(runs, analysis)
     placed = [name for section in sections for name in section.figures]
     figures = pictures(figures_folder, placed, analysis)
     total, first = len(figures), next(iter(figures), "")
@@ -71,6 +71,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         "report.html.j2",
         path,
         **described(runs),
+        headline=headline,
         answers=answer,
         note=note,
         bad=bool(regime_entries(runs)),

@@ -43,7 +43,7 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
     Raises FileNotFoundError when a figure is missing, OSError when `path` cannot be written.
     """
     outcomes = gravest_first(unpacked(findings))
-    answer, note = entries(findings)
+    headline, answer, note = entries(findings, None)
     size, failed = counts(findings)
     figures = pictures(figures_folder, made_from=findings)
     summary = Section("summary", "All checks", tables=[_summary(outcomes)])
@@ -53,6 +53,7 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
         **described(findings, "findings"),
         heading="Verification failed" if failed else "Verification passed",
         bad=bool(failed),
+        headline=headline,
         answers=answer,
         note=note,
         leading=figures.pop(OVERVIEW, None),

@@ -1,5 +1,7 @@
 """Cautions and notes: each where it matters, and only there."""
 
+import re
+
 import numpy as np
 import xarray as xr
 
@@ -40,7 +42,7 @@ def test_a_doubt_stands_beside_its_number_in_the_answer_and_in_the_table(report,
     runs, analysis = material_study
     runs["restitution"][1, 0, 0] = 1.05
     page = report(runs, analysis)
-    assert "to 1.05 (above 1 in 1 run)" in page.text
+    assert re.search(r"Doubtful: [^.]*restitution \(above 1 in 1 run\)", page.text)
     rows = page.tables["Range of each response"]
     assert next(row for row in rows if row[0].startswith("Restitution"))[0].endswith(
         "; above 1 in 1 run"

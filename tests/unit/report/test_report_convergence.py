@@ -65,8 +65,14 @@ def study():
 
 def _answers(study):
     """Return by response the grid that the answer names, with what it says against others."""
-    found = {}
-    for head, text in (entry for line in entries(*study)[0] for entry in line):
+    headline, lines, _ = entries(*study)
+    sentence = re.fullmatch(
+        r"With (.*), and on finer grids, the (.*) (?:is|are) within 1 %.*", headline
+    )
+    assert sentence
+    grid, listed = sentence.groups()
+    found = dict.fromkeys(re.split(", | and ", listed), f"from {grid}")
+    for head, text in (entry for line in lines for entry in line):
         if head == "On no grid of this study":
             listed = re.findall(r"(?:^|, | and )([a-z][a-z ]*?) \(([^()]*)\)", text)
             found |= {name: f"{NONE}: {doubts}" for name, doubts in listed}

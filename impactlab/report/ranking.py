@@ -1,0 +1,203 @@
+"""The parameters that matter in a sample, in sentences."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from impactlab.figures import access, labels, measures
+from impactlab.figures.measures import MORRIS, SOBOL, Index, analysed
+from impactlab.methods.record import Family
+from impactlab.methods.runs import correlations
+from impactlab.report.sensitivity import in_units, uncertainty, with_margin
+from impactlab.verification.functions import FUNCTIONS
+
+Entry = tuple[str, str]
+"""Subject and finding."""
+
+VERDICT = "sensitivity_verdict"
+"""Variable of the verdicts on the indices."""
+_COARSE, _SMALL = 0.02, 0.1
+"""Smallest half-width, and smallest share, that are given in whole per cent."""
+_MATTERS = 0.01
+"""Smallest share of the largest index that is named, and largest total order without effect."""
+_INTERACTS = 0.02
+"""Smallest share of the variance from interactions that is named."""
+_LEADING = 0.1
+"""Smallest share of the largest index that the headline names."""
+_MOST = 3
+"""Most parameters that are named per response."""
+
+
+def headline(runs: xr.Dataset, analysis: xr.Dataset, family: Family, response: str) -> str:
+    """Return which parameters matter most for a response, in a sentence, and how sure this is."""
+    index, name = _index(analysis, family, response), labels.response(response)
+    numbers = [n for n in _ranked(index) if _size(index)[n] > _LEADING * _size(index).max()]
+    numbers = numbers[:_MOST]
+    if not np.isfinite(index.values).any():
+        return f"No index of the {name} is defined"
+    if not numbers:
+        return f"No parameter stands out from the noise in the {name}"
+    texts = _texts(runs, analysis, family, response, numbers)
+    listed = labels.listing([f"the {text}" if " " in _head(text) else text for text in texts])
+    plural = len(numbers) > 1
+    if family is not SOBOL:
+        text = f"{listed} {'matter' if plural else 'matters'} most for the {name}"
+    else:
+        total = index.values[numbers].sum() / max(1.0, np.nansum(index.values))
+        part = "most" if total > 0.5 else "the largest part"
+        text = f"{listed} {'cause' if plural else 'causes'} {part} of the scatter of the {name}"
+    if index.numerically_lost[numbers].any():
+        return f"Not usable: the numerical error exceeds an index of the {name} ({listed})"
+    if index.numerical.any():
+        error, margin = index.numerical[numbers].max(), index.margins[numbers].min()
+        negligible = "negligible, " if error <= margin else ""
+        text += f"; numerical error is {negligible}{uncertainty(float(error))}"
+    return labels.sentence(text) if text.startswith("the ") else text
+
+
+def _head(text: str) -> str:
+    return text.partition(" (")[0]
+
+
+def entries(
+    runs: xr.Dataset, analysis: xr.Dataset, family: Family, responses: list[str]
+) -> list[Entry]:
+    """Return one entry per response: the parameters that matter, with their indices."""
+    listed: list[Entry] = []
+    for response in responses:
+        index = _index(analysis, family, response)
+        none = "no parameter stands out from the noise"
+        if not np.isfinite(index.values).any():
+            none = "no index is defined"
+        numbers = _ranked(index)[:_MOST]
+        text = ", ".join(_texts(runs, analysis, family, response, numbers)) or none
+        listed.append((labels.sentence(labels.response(response)), text))
+    return listed
+
+
+def without_effect(analysis: xr.Dataset, family: Family, responses: list[str]) -> list[Entry]:
+    """Return the parameters whose total order is surely below 1 % for all of these responses."""
+    if family is not SOBOL or "total_order" not in analysis or not responses:
+        return []
+    indices = [measures.index(analysis, "total_order", name) for name in responses]
+    reach = np.max([index.values + index.margins + index.numerical for index in indices], axis=0)
+    names = measures.parameters(analysis)
+    idle = [labels.parameter(names[n]) for n in np.flatnonzero(reach < _MATTERS)]
+    text = f"{labels.listing(idle)} (below {labels.percent(_MATTERS)} each)"
+    return [("No effect on any response", text)] if idle else []
+
+
+def unusable(runs: xr.Dataset, analysis: xr.Dataset) -> list[Entry]:
+    """Return the responses whose indices are not usable, with the reason; and gaps in the runs."""
+    reasons, missing = [], []
+    for name in analysed(runs, analysis):
+        verdict, response = access.verdict(analysis, VERDICT, name), labels.response(name)
+        if verdict and not verdict.sound:
+            reasons.append(f"{response} ({verdict.words})")
+        if gaps := int(access.absent(runs, name).sum()):
+            missing.append(f"{response} ({gaps:,} of {access.count(runs):,})")
+    heads = {"Do not rely on the indices of": reasons, "Missing runs": missing}
+    return [(head, ", ".join(texts)) for head, texts in heads.items() if texts]
+
+
+def sound(analysis: xr.Dataset, response: str) -> bool:
+    """Return whether the indices of a response are usable, as far as the analysis judges them."""
+    verdict = access.verdict(analysis, VERDICT, response)
+    return verdict is None or verdict.sound
+
+
+def _index(analysis: xr.Dataset, family: Family, response: str) -> Index:
+    return measures.index(analysis, family.ranked_by(analysis).name, response)
+
+
+def _size(index: Index) -> np.ndarray:
+    return np.where(index.above_noise, np.abs(index.values), 0.0)
+
+
+def _ranked(index: Index) -> list[int]:
+    """Return the numbers of the parameters that matter, the largest index first."""
+    size = _size(index)
+    order = np.argsort(-size, kind="stable").tolist()
+    return [number for number in order if size[number] > _MATTERS * size.max()]
+
+
+def _texts(
+    runs: xr.Dataset, analysis: xr.Dataset, family: Family, response: str, numbers: list[int]
+) -> list[str]:
+    """Return parameters with their indices: "yield stress of the beam (36 ± 3 %)"."""
+    names, index = measures.parameters(analysis), _index(analysis, family, response)
+    texts = []
+    for place, number in enumerate(numbers):
+        text = _written(runs, analysis, family, index, response, number)
+        means = "" if place else _of_words(runs, names[number], response)
+        texts.append(f"{labels.parameter(names[number])} ({text}{means})")
+    if texts and family.explained in analysis:
+        fit = float(analysis[family.explained].sel(response=response))
+        texts[-1] += f"; R² of the fit {labels.number(fit, 2)}"
+    return texts
+
+
+def _written(
+    runs: xr.Dataset,
+    analysis: xr.Dataset,
+    family: Family,
+    index: Index,
+    response: str,
+    number: int,
+) -> str:
+    """Return an index with its interval, and of a Sobol index what the parameter does alone."""
+    value, margin = float(index.values[number]), float(index.margins[number])
+    error = float(index.numerical[number])
+    if family is MORRIS:
+        return in_units(runs[response], value, margin)
+    if family is not SOBOL:
+        return with_margin(value, margin)
+    text = _share(value, margin, error)
+    first = measures.index(analysis, "first_order", response)
+    surplus = value - first.values[number]  # none where the first order ranks
+    reach = margin + first.margins[number] + error + first.numerical[number]
+    if surplus > max(_INTERACTS, reach):
+        text += f", {max(0.0, 100 * first.values[number]):.0f} % alone"
+    if "total_order" in analysis and (exact := _exact(runs)):
+        text += f", exactly {labels.percent(exact[measures.parameters(analysis)[number]], 3)}"
+    return text
+
+
+def _share(value: float, margin: float, error: float) -> str:
+    """Return a share of the variance, its half-width and a numerical error that is larger."""
+    decimals = 0 if margin >= _COARSE and value >= _SMALL else 1
+    within = max(100 * margin, 0.1)
+    text = f"{100 * value:.{decimals}f} ± {within:.{decimals}f} %"
+    return f"{text}, numerically {uncertainty(error)}" if error > margin else text
+
+
+def _exact(runs: xr.Dataset) -> dict[str, float]:
+    """Return the total orders of a function where they are known; {} where they are not."""
+    function = FUNCTIONS.get(str(runs.attrs.get("function", "")))
+    if function is None or correlations(runs):
+        return {}
+    for name, ends in function.ranges.items():
+        stated = runs[name].attrs if name in access.varied(runs) else {}
+        drawn = stated.get("low", np.nan), stated.get("high", np.nan)
+        if stated.get("distribution") != "uniform" or not np.allclose(drawn, ends, rtol=1e-3):
+            return {}
+    return dict(zip(function.ranges, function.total_order.tolist(), strict=True))
+
+
+def _of_words(runs: xr.Dataset, parameter: str, response: str) -> str:
+    """Return which words give the least and the largest mean response; "" for numbers."""
+    listed = labels.words(runs[parameter]) if parameter in runs.coords else []
+    if not listed:
+        return ""
+    means = access.means_by_word(runs, parameter, response).values()
+    intervals = [
+        (interval, word)
+        for word, interval in zip(listed, means, strict=True)
+        if interval[0] == interval[0]
+    ]
+    low, high = (
+        f"{in_units(runs[response], *interval)} with {word}"
+        for interval, word in (min(intervals), max(intervals))
+    )
+    return f"; on average {low} to {high}"
