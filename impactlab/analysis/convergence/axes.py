@@ -37,13 +37,13 @@ class Growth:
 class Axis:
     """An axis of the discretisation that is refined.
 
-    name: prefix of the variables; words: the axis in titles, such as "the nodes". spacings: by
+    name: prefix of the variables; label: the axis in titles, such as "the nodes". spacings: by
     dimension of the runs, the function from its values to what tends to zero, in any unit. comment:
     what to know about the order, from the runs. growth: of what has no limit, if anything.
     """
 
     name: str
-    words: str
+    label: str
     spacings: Mapping[str, Callable[[Floats], Floats]]
     comment: Callable[[xr.Dataset], str]
     growth: Growth | None = None
@@ -64,7 +64,7 @@ class Axis:
         spacings = self.spacings[dim](values[dim].values.astype(float))
         finest_first = np.argsort(spacings)
         values, spacings = values.isel({dim: finest_first}), spacings[finest_first]
-        judged = xr.apply_ufunc(
+        columns = xr.apply_ufunc(
             partial(judge, spacings=spacings),
             values,
             input_core_dims=[[dim]],
@@ -72,29 +72,29 @@ class Axis:
             output_dtypes=[np.int8 if name in _FLAGS else float for name in Judgement._fields],
             vectorize=True,
         )
-        fields = dict(zip(Judgement._fields, judged, strict=True))
+        fields = dict(zip(Judgement._fields, columns, strict=True))
         limited = ~without_limit(runs, values, self.growth, dim)
-        found = {
+        judged = {
             name: field.where(limited, _WITHOUT_LIMIT.get(name, np.nan))
             for name, field in fields.items()
         }
-        found["observed_order"] = fields["observed_order"]
+        judged["observed_order"] = fields["observed_order"]
         comment = self.comment(runs)
-        said = {"tolerance": TOLERANCE, "comment": comment}
+        remarks = {"tolerance": TOLERANCE, "comment": comment}
         if self.growth and _STRAIN in values["response"].values:
-            said["without_limit"] = f"{_STRAIN}: {self.growth.reason}"
+            remarks["without_limit"] = f"{_STRAIN}: {self.growth.reason}"
         dataset = xr.Dataset()
         for key, long_name in _NUMBERS.items():
             about = f"{_COMMENTS.get(key, '')} {comment}".strip()
-            attrs = {"long_name": long_name.format(self.words), "comment": about}
+            attrs = {"long_name": long_name.format(self.label), "comment": about}
             attrs |= {} if key.endswith("extrapolated") else {"units": "1"}
-            dataset[f"{self.name}_{key}"] = found[key].assign_attrs(attrs)
+            dataset[f"{self.name}_{key}"] = judged[key].assign_attrs(attrs)
         for key, (kind, long_name) in _FLAGS.items():
-            dataset[f"{self.name}_{key}"] = flagged(found[key], kind, f"{long_name} {self.words}")
-        words = f"convergence with {self.words}"
-        dataset.update(verdict_variables(found["verdict"], AxisVerdict, self.name, words))
+            dataset[f"{self.name}_{key}"] = flagged(judged[key], kind, f"{long_name} {self.label}")
+        subject = f"convergence with {self.label}"
+        dataset.update(verdict_variables(judged["verdict"], AxisVerdict, self.name, subject))
         for key in ("verdict", "summary"):
-            dataset[f"{self.name}_{key}"].attrs |= said
+            dataset[f"{self.name}_{key}"].attrs |= remarks
         return dataset
 
 
@@ -146,10 +146,10 @@ def without_limit(
     values: the usable responses of the runs on (response, *grid dims).
     """
     largest = values.max(dim)
-    found = xr.zeros_like(largest, dtype=bool)
+    endless = xr.zeros_like(largest, dtype=bool)
     if growth:
-        found = (found["response"] == _STRAIN) & (largest > 0) & growth.affected(runs)
-    return found.transpose(*largest.dims).reset_coords(drop=True)
+        endless = (largest["response"] == _STRAIN) & (largest > 0) & growth.affected(runs)
+    return endless.transpose(*largest.dims).reset_coords(drop=True)
 
 
 def _beams_that_do_not_harden(runs: xr.Dataset) -> xr.DataArray:

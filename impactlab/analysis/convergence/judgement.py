@@ -25,7 +25,7 @@ from impactlab.analysis.convergence.richardson import (
     SAFETY_CREDIBLE,
     SAFETY_DOUBTFUL,
     Behaviour,
-    Estimate,
+    ThreeGrids,
     relative,
 )
 from impactlab.types import Floats
@@ -86,9 +86,9 @@ def numerical_uncertainty(values: npt.ArrayLike, spacings: npt.ArrayLike) -> tup
     f, h = np.asarray(values, float), np.asarray(spacings, float)
     if not h[0] > 0 or not (np.diff(h) > 0).all():
         raise ValueError(f"grid spacings must rise from the finest on: {h.tolist()}")
-    there = np.isfinite(f)
+    present = np.isfinite(f)
     amounts = np.full(f.shape, math.inf)
-    amounts[there], how = _of_present(f[there], h[there])
+    amounts[present], how = _of_present(f[present], h[present])
     return amounts, how
 
 
@@ -226,7 +226,7 @@ def judge(values: Floats, spacings: Floats) -> Judgement:
     )
 
 
-def _verdict(triples: list[Estimate], how: How, uncertainty: float) -> AxisVerdict:
+def _verdict(triples: list[ThreeGrids], how: How, uncertainty: float) -> AxisVerdict:
     """Return the verdict on the finest grid, with its relative uncertainty and the basis of it."""
     finest, within = triples[0], how.sound and uncertainty <= TOLERANCE
     if within and finest.behaviour not in (Behaviour.AT_ROUND_OFF, Behaviour.UNDETERMINED):

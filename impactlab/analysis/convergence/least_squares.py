@@ -84,7 +84,7 @@ def fit(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Fit:
     return min(fits, key=lambda fitted: fitted.deviation)
 
 
-def uncertainty(found: Fit, values: npt.ArrayLike) -> Floats:
+def uncertainty(fitted: Fit, values: npt.ArrayLike) -> Floats:
     """Return the half-width about each value that holds the limit in about 95 % of cases.
 
     F eps + sigma + |residual| with F = 1.25 where the fitted order is reliable (0.5 to 2.1) and
@@ -92,12 +92,12 @@ def uncertainty(found: Fit, values: npt.ArrayLike) -> Floats:
     |residual|) where the fit is poor. In the unit of the values, (grids,).
     """
     delta = float(np.ptp(values)) / (np.size(values) - 1)
-    if found.deviation > delta:
-        poor = SAFETY_DOUBTFUL * found.deviation / delta
-        return poor * (found.errors + found.deviation + abs(found.residuals))
-    reliable = ORDERS[0] <= found.free_order < HIGHEST_RELIABLE
+    if fitted.deviation > delta:
+        poor = SAFETY_DOUBTFUL * fitted.deviation / delta
+        return poor * (fitted.errors + fitted.deviation + abs(fitted.residuals))
+    reliable = ORDERS[0] <= fitted.free_order < HIGHEST_RELIABLE
     safety = SAFETY_CREDIBLE if reliable else SAFETY_DOUBTFUL
-    return safety * found.errors + found.deviation + abs(found.residuals)
+    return safety * fitted.errors + fitted.deviation + abs(fitted.residuals)
 
 
 def _fit(
@@ -133,9 +133,9 @@ def _free_order(f: Floats, h: Floats, weights: Floats) -> float:
         slopes = (curves * values) @ weights / (curves**2 @ weights)
         return np.asarray((values - slopes[:, None] * curves) ** 2 @ weights)
 
-    at = int(np.argmin(misfits(_SEARCHED)))
-    around = _SEARCHED[max(at - 1, 0)], _SEARCHED[min(at + 1, _SEARCHED.size - 1)]
-    found = minimize_scalar(
+    best = int(np.argmin(misfits(_SEARCHED)))
+    around = _SEARCHED[max(best - 1, 0)], _SEARCHED[min(best + 1, _SEARCHED.size - 1)]
+    minimum = minimize_scalar(
         lambda order: misfits(order)[0], bounds=around, method="bounded", options={"xatol": 1e-10}
     )
-    return float(found.x)
+    return float(minimum.x)

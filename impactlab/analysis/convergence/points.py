@@ -68,14 +68,14 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     codes = codes.where(~(most_first <= ROUND_OFF).all("points"), PointsVerdict.AT_ROUND_OFF)
     codes = codes.where(nearest.notnull(), PointsVerdict.UNDETERMINED)
     dims = ("response", *runs["status"].dims)
-    found = {
+    variables = {
         "points_error": error.sel(points=runs["points"]).transpose(*dims),
         "points_uncertainty": uncertainty,
         "points_needed": error["points"].where(stays).min("points"),
     }
-    words = "convergence with the integration points"
-    verdicts = verdict_variables(codes, PointsVerdict, "points", words)
-    dataset = xr.Dataset(found | verdicts)
+    subject = "convergence with the integration points"
+    verdicts = verdict_variables(codes, PointsVerdict, "points", subject)
+    dataset = xr.Dataset(variables | verdicts)
     for key, long_name in _LONG_NAMES.items():
         dataset[key].attrs = {"long_name": long_name, "units": "1", "comment": _COMMENT}
     about = f"{SAFETY:g} times the difference to the next fewer, relative to the value."
@@ -92,8 +92,8 @@ def numerical_uncertainty(values: npt.ArrayLike) -> Floats:
     larger of its own difference to the most points and that of the next fewer; infinite for a
     missing run, and for all where one of these two is missing. In the unit of the values.
     """
-    found = np.asarray(values, float)
-    if found.size < 2 or not np.isfinite(found[:2]).all():
-        return np.full(found.shape, np.inf)
-    amounts = SAFETY * np.maximum(abs(found - found[0]), abs(found[1] - found[0]))
-    return np.where(np.isfinite(found), amounts, np.inf)
+    f = np.asarray(values, float)
+    if f.size < 2 or not np.isfinite(f[:2]).all():
+        return np.full(f.shape, np.inf)
+    amounts = SAFETY * np.maximum(abs(f - f[0]), abs(f[1] - f[0]))
+    return np.where(np.isfinite(f), amounts, np.inf)

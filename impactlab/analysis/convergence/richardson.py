@@ -47,7 +47,7 @@ class Behaviour(Verdict):
 
 
 @dataclass(frozen=True)
-class Estimate:
+class ThreeGrids:
     """The evidence of three grids, in the unit of the values; NaN where undefined.
 
     values: f1, f2, f3; ratios: r21, r32. order: p, negative when divergent. extrapolated:
@@ -136,7 +136,7 @@ def grid_convergence_index(fine: float, coarse: float, ratio: float, order: floa
     return relative(SAFETY_CREDIBLE * _error(fine, coarse, ratio, order), fine)
 
 
-def estimate(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Estimate:
+def estimate(values: npt.ArrayLike, spacings: npt.ArrayLike) -> ThreeGrids:
     """Return the behaviour, order and Richardson value of three grids, finest first.
 
     values: f1, f2, f3 in any unit; spacings: h1 < h2 < h3 in any unit, for only ratios count.
@@ -148,28 +148,28 @@ def estimate(values: npt.ArrayLike, spacings: npt.ArrayLike) -> Estimate:
     (f1, f2, f3), (h1, h2, h3) = f, h
     if not 0 < h1 < h2 < h3 < math.inf:
         raise ValueError(f"grid spacings must rise from the finest on: {h1}, {h2}, {h3}")
-    found = partial(Estimate, values=(f1, f2, f3), ratios=(h2 / h1, h3 / h2))
+    evidence = partial(ThreeGrids, values=(f1, f2, f3), ratios=(h2 / h1, h3 / h2))
     if not np.isfinite(f).all():
-        return found(Behaviour.UNDETERMINED)
+        return evidence(Behaviour.UNDETERMINED)
     smallest = ROUND_OFF * max(abs(f1), abs(f2), abs(f3))
     fine_still, coarse_still = abs(f2 - f1) <= smallest, abs(f3 - f2) <= smallest
     if fine_still:
-        return found(Behaviour.AT_ROUND_OFF if coarse_still else Behaviour.STALLED)
+        return evidence(Behaviour.AT_ROUND_OFF if coarse_still else Behaviour.STALLED)
     if coarse_still:
-        return found(Behaviour.MONOTONE_DIVERGENT)
+        return evidence(Behaviour.MONOTONE_DIVERGENT)
     change = (f3 - f2) / (f2 - f1)
     order = observed_order(change, h2 / h1, h3 / h2)
     if change < 0:
         converging = order > ROUND_OFF
         behaviour = Behaviour.OSCILLATORY if converging else Behaviour.OSCILLATORY_DIVERGENT
-        return found(behaviour, order=order)
+        return evidence(behaviour, order=order)
     if order <= ROUND_OFF:
-        return found(Behaviour.MONOTONE_DIVERGENT, order=order)
+        return evidence(Behaviour.MONOTONE_DIVERGENT, order=order)
     limit = f1 - (f2 - f1) / math.expm1(order * math.log(h2 / h1))
-    return found(Behaviour.MONOTONE, order=order, extrapolated=limit)
+    return evidence(Behaviour.MONOTONE, order=order, extrapolated=limit)
 
 
-def safety(triples: list[Estimate]) -> float:
+def safety(triples: list[ThreeGrids]) -> float:
     """Return 1.25 where every three successive grids show a credible order, and 3 otherwise.
 
     It is 3, too, where the order of the finest three (the first) is too high to be reliable.
@@ -179,7 +179,7 @@ def safety(triples: list[Estimate]) -> float:
     return SAFETY_CREDIBLE if reliable else SAFETY_DOUBTFUL
 
 
-def confirmed(triples: list[Estimate]) -> bool:
+def confirmed(triples: list[ThreeGrids]) -> bool:
     """Return True if more than chance supports the order of the three finest grids (the first).
 
     The next three grids show the same order, or, on three grids in all, it is the formal one.
@@ -188,8 +188,8 @@ def confirmed(triples: list[Estimate]) -> bool:
     if not coarser:
         return finest.credible and abs(finest.order - FORMAL_ORDER) <= SAME_ORDER
     following = coarser[0]
-    both = finest.credible and following.credible
-    return both and abs(finest.order - following.order) <= SAME_ORDER
+    credible = finest.credible and following.credible
+    return credible and abs(finest.order - following.order) <= SAME_ORDER
 
 
 def observed_order(change: float, r21: float, r32: float) -> float:

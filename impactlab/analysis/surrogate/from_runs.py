@@ -13,11 +13,12 @@ from threadpoolctl import threadpool_limits
 from impactlab.analysis.regimes import of_sample
 from impactlab.analysis.surrogate.chaos import Chaos, drawn, fewest_runs, fit, indices, influence
 from impactlab.analysis.surrogate.polynomials import Polynomials, orthonormal
-from impactlab.analysis.surrogate.validation import ErrorModel, leverage, predictivity
+from impactlab.analysis.surrogate.validation import error_model, leverage, predictivity
 from impactlab.methods import SAMPLES
 from impactlab.methods.distributions import DISTRIBUTIONS, distribution_of
 from impactlab.methods.runs import Sample, correlations, labels, listed, usable
 from impactlab.methods.sampling import RandomSample
+from impactlab.methods.verdict import MOSTLY
 from impactlab.types import Floats
 from impactlab.verdicts import ROUND_OFF, Verdict, distinct, flagged
 
@@ -107,7 +108,6 @@ class Divided:
 GOOD = (
     0.9  # lower end of the predictivity on runs left out from which on a surrogate needs no warning
 )
-MOSTLY = 0.9
 FEW = 20  # distinct values up to which a response jumps between levels, where each comes ten times
 
 
@@ -151,7 +151,7 @@ def surrogate(values: Floats, divided: Divided) -> tuple[SurrogateVerdict, dict[
     pull = influence(chaos, inputs, values[rows], block, rmse)
     missed = min(max(1 - q2, 0.0), 1.0)
     properties = {"chaos": chaos, "q2": q2, "q2_low": low, "rmse": rmse, "runs": rows.size}
-    properties |= ErrorModel.of(leverage(chaos, divided.inputs(tests)), errors).variables()
+    properties |= error_model(leverage(chaos, divided.inputs(tests)), errors)
     properties["held_out"] = predicted
     if not (regimes := of_sample(sample, values).size):
         properties |= indices(chaos, sample.memberships, pull, missed, sample.confidence)

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
-
 import numpy as np
 import scipy  # its stats are loaded when first used
 from numpy.typing import NDArray
@@ -45,13 +42,18 @@ def predictivity(
     return 1 - ratio, float(1 - ratio * np.exp(student * scatter) - 1 / places)
 
 
-@dataclass(frozen=True)
-class ErrorModel:
-    """The error of a surrogate, which grows with the leverage of a point (see `leverage`).
+def error_model(leverages: Floats, errors: Floats) -> dict[str, float]:
+    """Return how the error of a surrogate grows with the leverage of a point (see `leverage`).
 
-    error: half-width of the interval of a prediction where the leverage is 1 or less, in the
-    response's unit. growth: power of a larger leverage that the squared error grows with. reach:
-    highest leverage of a run that was left out.
+    leverages, errors: of runs that were left out, both (runs,). Returns, by their names in an
+    analysis: error, the half-width of the interval of a prediction where the leverage is 1 or less,
+    in the response's unit; error_growth, the power of a larger leverage that the squared error
+    grows with; and reach, the highest leverage.
+
+    The growth is the largest that the likelihood of normal errors does not exclude, and 1 at
+    least, as of a least-squares fit; the error is the quantile of the errors, each over its
+    leverage to that power, that holds the share LEVEL of further ones: Lei et al. (2018), J.
+    Am. Stat. Assoc. 113, 1094, section 5.2 (recalled, not read).
 
     The error does not fall below that at the average leverage, 1: in the middle the terms of the
     chaos are small, but those that it lacks are not. With one parameter anywhere in its range and
@@ -59,37 +61,23 @@ class ErrorModel:
     (studies/sobol.yaml) hold the solver's answer in 97 to 100 % per response, and in 88 to 100 %
     per response and parameter (tests/benchmarks/surrogate_coverage.py).
     """
-
-    error: float
-    growth: float
-    reach: float
-
-    @classmethod
-    def of(cls, leverages: Floats, errors: Floats) -> ErrorModel:
-        """Return the model of errors at runs that were left out, both (runs,).
-
-        The growth is the largest that the likelihood of normal errors does not exclude, and 1 at
-        least, as of a least-squares fit; the error is the quantile of the errors, each over its
-        leverage to that power, that holds the share LEVEL of further ones: Lei et al. (2018), J.
-        Am. Stat. Assoc. 113, 1094, section 5.2 (recalled, not read).
-        """
-        outward = np.maximum(leverages, 1.0)
-        scaled = errors**2 / outward ** _GROWTHS[:, np.newaxis]
-        mean = np.maximum(scaled.mean(axis=1), np.finfo(float).tiny)
-        likelihood = -(_GROWTHS * np.log(outward).sum() + errors.size * np.log(mean)) / 2
-        threshold = likelihood.max() - scipy.stats.chi2.ppf(LEVEL, 1) / 2
-        largest = int(np.flatnonzero(likelihood >= threshold)[-1])
-        ranked = np.sort(np.sqrt(scaled[largest]))
-        rank = min(int(np.ceil(LEVEL * (errors.size + 1))), errors.size)
-        return cls(float(ranked[rank - 1]), float(_GROWTHS[largest]), float(leverages.max()))
-
-    def variables(self) -> dict[str, Any]:
-        """Return the fields by their names in an analysis."""
-        return {"error": self.error, "error_growth": self.growth, "reach": self.reach}
+    outward = np.maximum(leverages, 1.0)
+    scaled = errors**2 / outward ** _GROWTHS[:, np.newaxis]
+    mean = np.maximum(scaled.mean(axis=1), np.finfo(float).tiny)
+    likelihood = -(_GROWTHS * np.log(outward).sum() + errors.size * np.log(mean)) / 2
+    threshold = likelihood.max() - scipy.stats.chi2.ppf(LEVEL, 1) / 2
+    largest = int(np.flatnonzero(likelihood >= threshold)[-1])
+    ranked = np.sort(np.sqrt(scaled[largest]))
+    rank = min(int(np.ceil(LEVEL * (errors.size + 1))), errors.size)
+    return {
+        "error": float(ranked[rank - 1]),
+        "error_growth": float(_GROWTHS[largest]),
+        "reach": float(leverages.max()),
+    }
 
 
 def half_width(leverage: Floats, error: Floats, growth: Floats) -> Floats:
-    """Return half-widths of the intervals of predictions (see `ErrorModel`)."""
+    """Return half-widths of the intervals of predictions (see `error_model`)."""
     return np.asarray(error * np.maximum(leverage, 1.0) ** (growth / 2))
 
 

@@ -6,7 +6,7 @@ import scipy.stats
 
 from impactlab.analysis.surrogate.chaos import fit
 from impactlab.analysis.surrogate.polynomials import orthonormal
-from impactlab.analysis.surrogate.validation import ErrorModel, half_width, leverage, predictivity
+from impactlab.analysis.surrogate.validation import error_model, half_width, leverage, predictivity
 from impactlab.methods.distributions import distribution_of
 
 NORMAL = {
@@ -37,15 +37,15 @@ def test_stated_errors_hold_at_one_bound_and_in_corners():
             errors[left] = fit(inputs[~left], values[~left], 0, polynomials)(inputs[left])
         errors -= values
         chaos = fit(inputs, values, 0, polynomials)
-        model = ErrorModel.of(leverage(chaos, inputs), errors)
+        model = error_model(leverage(chaos, inputs), errors)
         bounds = inputs[:30].copy()
         bounds[np.arange(30), np.arange(30) % 3] = rng.choice([-1.0, 1.0], 30)
         corners = rng.choice([-1.0, 1.0], (8, 3))
         for name, points in (("bound", bounds), ("corner", corners)):
             outward = leverage(chaos, points)
-            stated = half_width(outward, model.error, model.growth)
+            stated = half_width(outward, model["error"], model["error_growth"])
             inside[name] += (np.abs(chaos(points) - response(points)) <= stated).tolist()
-        assert (leverage(chaos, corners) > model.reach).all(), "a corner is not extrapolated"
+        assert (leverage(chaos, corners) > model["reach"]).all(), "a corner is not extrapolated"
     assert {name: np.mean(hits) > 0.9 for name, hits in inside.items()} == dict.fromkeys(
         inside, True
     )
@@ -56,8 +56,10 @@ def test_stated_errors_hold_in_the_middle():
     rng, inside = np.random.default_rng(0), []
     for _ in range(200):
         leverages = np.exp(rng.normal(-0.5, 1.0, 400))
-        model = ErrorModel.of(leverages, rng.normal(size=400) * np.maximum(leverages, 1.0))
-        inside.append(np.abs(rng.normal()) <= half_width(0.1, model.error, model.growth))
+        model = error_model(leverages, rng.normal(size=400) * np.maximum(leverages, 1.0))
+        inside.append(
+            np.abs(rng.normal()) <= half_width(0.1, model["error"], model["error_growth"])
+        )
     assert np.mean(inside) > 0.9
 
 
