@@ -9,7 +9,6 @@ from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
-import netCDF4
 import numpy as np
 import psutil
 import xarray as xr
@@ -141,7 +140,7 @@ def stored(folder):
 
 def shards(folder):
     """Return the files of finished batches."""
-    return sorted((folder / "results" / "tough" / "shards").glob("*/*.nc"))
+    return sorted((folder / "results" / "tough" / "shards").glob("*/*.npz"))
 
 
 def keys_on_disk(folder):
@@ -151,8 +150,8 @@ def keys_on_disk(folder):
 
 def keys_in(path):
     """Return the key of every run in one shard, read without impactlab."""
-    with netCDF4.Dataset(path) as shard:
-        return {row.tobytes() for row in np.asarray(shard["uint8_byte"][0], dtype=np.uint8)}
+    with np.load(path) as shard:
+        return {key.tobytes() for key in shard["run key"]}
 
 
 def solved_before(said):

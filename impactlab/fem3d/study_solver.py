@@ -38,7 +38,7 @@ from impactlab.simulate import solve as solve_cases
 from impactlab.solver import BEAM_MODELS
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.solver.types import CASE
-from impactlab.study.netcdf import Array, Columns
+from impactlab.study.shard import Array, Columns
 from impactlab.study.solvers import flattened, kernels, run_shape
 from impactlab.study.store import OutputSpec
 from impactlab.variables import FAILURES, HISTORIES, RESPONSES, described

@@ -1,4 +1,4 @@
-"""Studies: what a YAML file asks for, drawn up as runs, solved under dask, kept as netCDF."""
+"""Studies: what a YAML file asks for, drawn up as runs, solved under dask, kept on disk."""
 
 SHARDS, TRIALS, REFINEMENT = "shards", "trials", "refinement"
 """Folders beside a study's results: its own runs, pilot runs for `auto`, runs on finer grids."""

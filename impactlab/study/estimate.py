@@ -22,9 +22,9 @@ from impactlab.model.plausibility import implausibilities
 from impactlab.model.quantities import amount, time
 from impactlab.simulate import case_table
 from impactlab.study.inventory import BOUND_IT, file_stats
-from impactlab.study.netcdf import Array
 from impactlab.study.schema.consistency import extremes, further_models, key_of
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy, ImpactStudy
+from impactlab.study.shard import Array
 from impactlab.validation.errors import Problem, StudyError
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 

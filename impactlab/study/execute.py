@@ -20,8 +20,8 @@ from distributed.comm.core import CommClosedError
 
 from impactlab.study.engine import Engine
 from impactlab.study.inventory import Work, open_answers
-from impactlab.study.netcdf import Array, Columns
 from impactlab.study.progress import items_done
+from impactlab.study.shard import Array, Columns
 from impactlab.study.solvers import solver_named
 from impactlab.study.store import OutputSpec, RunIndex, Shards, joined, locked
 

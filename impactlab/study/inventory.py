@@ -19,7 +19,7 @@ import xarray as xr
 from dask.delayed import delayed
 
 from impactlab.files import block_rows, unfinished_files
-from impactlab.study.netcdf import DAMAGE, KEYS, Array, Shard
+from impactlab.study.shard import DAMAGE, KEYS, Array, Shard
 from impactlab.study.solvers import SOLVERS, Solver, run_shape, solver_named
 from impactlab.study.store import (
     DAMAGED,
@@ -114,8 +114,9 @@ def open_answers(
         columns = {}
         with opened(paths[shard_of[0]]) as shard:
             for name in names:
-                row, kind = shard.layout(name)
-                size, parts = block_rows(row) if row else index.size, []
+                column, parts = shard.read(name), []
+                row, kind = column.shape[1:], column.dtype
+                size = block_rows(row) if row else index.size
                 for start in range(0, index.size, size):
                     shape = (min(size, index.size - start), *row)
                     part = delayed(read)(name, start, shape, kind)
@@ -219,11 +220,11 @@ def removable_files(folder: Path, designs: Collection[xr.Dataset] | None) -> dic
     for place in folder.glob("*/"):
         reasons |= dict.fromkeys(unfinished_files(place), "is unfinished")
         reasons |= dict.fromkeys(place.glob(f"*{DAMAGED}"), "was damaged and set aside")
-        for path in shard_files(place):
-            if place not in needed:
-                reasons[path] = "belongs to another version of the solver, or another output"
-            elif designs:
-                sound = sound_runs(path)
-                if sound and not any(np.isin(sound[0], keys).any() for keys in needed[place]):
-                    reasons[path] = "holds no run of the study"
+        if place not in needed:
+            reason = "belongs to another version of the solver, or another output"
+            reasons |= dict.fromkeys(place.glob("[0-9a-f]" * 32 + ".n*"), reason)  # once .nc
+        for path in shard_files(place) if designs and place in needed else ():
+            sound = sound_runs(path)
+            if sound and not any(np.isin(sound[0], keys).any() for keys in needed[place]):
+                reasons[path] = "holds no run of the study"
     return {path: why for path, why in sorted(reasons.items()) if path.is_file()}

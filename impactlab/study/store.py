@@ -25,7 +25,7 @@ import xarray as xr
 from filelock import FileLock, Timeout
 
 from impactlab.files import unfinished_files
-from impactlab.study.netcdf import DAMAGE, KEY, KEYS, LAYOUT, Array, Columns, Shard, write_shard
+from impactlab.study.shard import DAMAGE, KEY, KEYS, LAYOUT, Array, Columns, Shard, write_shard
 
 log = logging.getLogger(__name__)
 
@@ -105,7 +105,7 @@ class Shards:
 
         columns: by name, one row per key. Raises OSError, for example when the disk is full.
         """
-        path = self.folder / f"{hashlib.sha256(keys.tobytes()).hexdigest()[:32]}.nc"
+        path = self.folder / f"{hashlib.sha256(keys.tobytes()).hexdigest()[:32]}.npz"
         write_shard(path, keys, columns)
         if _size(keys, columns) < _SMALL:
             self._small[path] = keys, columns
@@ -127,7 +127,7 @@ class Shards:
 
 def shard_files(folder: Path) -> list[Path]:
     """Return what has a shard's name in a folder, sound or not; of nothing else that lies there."""
-    return sorted(folder.glob("[0-9a-f]" * 32 + ".nc"))
+    return sorted(folder.glob("[0-9a-f]" * 32 + ".npz"))
 
 
 def _size(keys: Array, columns: Columns) -> int:

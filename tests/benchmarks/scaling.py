@@ -38,7 +38,7 @@ from impactlab.files import opened, write_netcdf
 from impactlab.model.parameters import flatten
 from impactlab.study.engine import Engine
 from impactlab.study.execute import open_runs
-from impactlab.study.netcdf import Columns
+from impactlab.study.shard import Columns
 from impactlab.study.solvers import kernels as impacts
 from impactlab.study.store import OutputSpec
 from impactlab.variables import RESPONSES, described

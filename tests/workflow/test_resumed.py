@@ -27,7 +27,7 @@ def test_an_interrupted_study_goes_on(folder, how):
     )
     shards = folder / "results" / "slow" / "shards"
     deadline = time.monotonic() + 120
-    while not list(shards.glob("*/*.nc")) and time.monotonic() < deadline:
+    while not list(shards.glob("*/*.npz")) and time.monotonic() < deadline:
         time.sleep(0.01)
     os.kill(started.pid, how)
     _, said = started.communicate(timeout=60)

@@ -35,8 +35,8 @@ def test_status_and_clean(folder):
     assert "Nothing to remove" in impactlab("clean", cwd=folder).stdout
     (folder / "studies" / "gone.yaml").unlink()
     assert "Nothing to remove" in impactlab("clean", "--yes", cwd=folder).stdout
-    (kept,) = folder.glob("results/gone/shards/*/*.nc")
-    (shard,) = folder.glob("results/small/shards/*/*.nc")
+    (kept,) = folder.glob("results/gone/shards/*/*.npz")
+    (shard,) = folder.glob("results/small/shards/*/*.npz")
     (folder / "studies" / "small.yaml").write_text(STUDY.replace("[1.0, 2.0, 3.0]", "[5.0]"))
     refused = impactlab("clean", cwd=folder, said="n\n")
     assert "holds no run of the study" in refused.stdout
@@ -54,7 +54,7 @@ def test_clean_takes_the_folder_of_studies_that_lie_elsewhere(folder):
     mine.write_text(STUDY.replace("[1.0, 2.0, 3.0]", "[5.0]"))
     assert "Nothing to remove" in impactlab("clean", "--yes", cwd=folder).stdout
     assert "holds no run" in impactlab("clean", "elsewhere", "--yes", cwd=folder).stdout
-    assert not list(folder.glob("results/mine/shards/*/*.nc"))
+    assert not list(folder.glob("results/mine/shards/*/*.npz"))
 
 
 def test_clean_does_not_take_a_wrong_folder_for_studies(folder):
@@ -62,7 +62,7 @@ def test_clean_does_not_take_a_wrong_folder_for_studies(folder):
     done = impactlab("clean", "results", "--yes", cwd=folder)
     assert done.returncode == 1
     assert "no study files" in done.stderr
-    assert list(folder.glob("results/small/shards/*/*.nc"))
+    assert list(folder.glob("results/small/shards/*/*.npz"))
 
 
 HOLD = """

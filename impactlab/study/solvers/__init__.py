@@ -12,7 +12,7 @@ import xarray as xr
 
 from impactlab import wings
 from impactlab.methods.runs import listed
-from impactlab.study.netcdf import Array, Columns
+from impactlab.study.shard import Array, Columns
 from impactlab.study.store import OutputSpec
 from impactlab.variables import attributes, provenance
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.study.netcdf import Array, Columns
+from impactlab.study.shard import Array, Columns
 from impactlab.study.solvers import Solver, flattened, on_design
 from impactlab.study.store import OutputSpec
 from impactlab.verification.functions import FUNCTIONS, sources_hash

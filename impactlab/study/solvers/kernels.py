@@ -21,7 +21,7 @@ from impactlab.simulate import (
     solve,
 )
 from impactlab.solver.jit import SOURCES_HASH
-from impactlab.study.netcdf import Array
+from impactlab.study.shard import Array
 from impactlab.study.solvers import Solver, flattened, run_shape
 from impactlab.study.store import OutputSpec
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits

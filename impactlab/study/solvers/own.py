@@ -22,8 +22,8 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.simulate import run_dataset
-from impactlab.study.netcdf import Array, Columns
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy
+from impactlab.study.shard import Array, Columns
 from impactlab.study.solvers import Solver, flattened, on_design
 from impactlab.study.solvers.fingerprint import fingerprint
 from impactlab.study.solvers.kernels import SOLVER as IMPACT

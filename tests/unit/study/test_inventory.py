@@ -6,7 +6,7 @@ import pytest
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
 from impactlab.study.inventory import Work, file_stats, open_answers, removable_files, status
-from impactlab.study.store import OutputSpec, RunIndex, Shards, locked, shard_files
+from impactlab.study.store import OutputSpec, RunIndex, Shards, locked
 
 OTHER_SOLVER = "belongs to another version of the solver, or another output"
 KEYS = np.array([b"a" * 16, b"b" * 16, b"c" * 16, b"b" * 16])
@@ -41,10 +41,13 @@ def test_a_run_without_answers_is_an_error(shards):
 
 
 def test_a_shard_that_is_damaged_meanwhile_is_an_error(shards):
-    first, second = shard_files(shards.folder)
-    with open_answers(shards, RunIndex(KEYS), ["force"]) as columns:
-        first.write_bytes(second.read_bytes())
-        with pytest.raises(OSError, match=f"{first.name} was damaged"):
+    keys = np.array([f"{run:016}".encode() for run in range(10_000)])
+    path = shards.write(keys, {"force": np.zeros(keys.size)})  # larger than a buffer of its file
+    with open_answers(shards, RunIndex(np.append(KEYS, keys)), ["force"]) as columns:
+        content = bytearray(path.read_bytes())
+        content[-1000] ^= 1
+        path.write_bytes(content)
+        with pytest.raises(OSError, match=f"{path.name} was damaged"):
             columns["force"].compute(scheduler="synchronous")
 
 
@@ -102,16 +105,16 @@ def test_what_is_asked_for_stays_and_the_rest_is_named_with_the_reason(small_des
     execute(small_design(1.0, 2.0), tmp_path, Engine())
     assert removable_files(tmp_path, [small_design(1.0, 2.0)]) == {}
     assert removable_files(tmp_path, [small_design(7.0), small_design(2.0)]) == {}
-    (shard,) = tmp_path.glob("*/*.nc")
+    (shard,) = tmp_path.glob("*/*.npz")
     assert removable_files(tmp_path, [small_design(3.0)]) == {shard: "holds no run of the study"}
     assert removable_files(tmp_path, [small_design(1.0, profiles=1)]) == {shard: OTHER_SOLVER}
 
 
 def test_left_overs_can_go_and_what_cannot_be_read_stays(small_design, tmp_path, caplog):
     execute(small_design(1.0), tmp_path, Engine())
-    (shard,) = tmp_path.glob("*/*.nc")
-    unfinished = shard.with_name(f".some.nc.{32 * 'a'}")
-    damaged = shard.with_name("some.nc.damaged")
+    (shard,) = tmp_path.glob("*/*.npz")
+    unfinished = shard.with_name(f".some.npz.{32 * 'a'}")
+    damaged = shard.with_name("some.npz.damaged")
     unfinished.touch()
     damaged.touch()
     shard.write_bytes(shard.read_bytes()[:-10])
@@ -123,7 +126,12 @@ def test_left_overs_can_go_and_what_cannot_be_read_stays(small_design, tmp_path,
 def test_of_runs_beside_a_study_only_those_of_another_solver_can_go(small_design, tmp_path):
     execute(small_design(1.0), tmp_path, Engine())
     assert removable_files(tmp_path, None) == {}
-    (shard,) = tmp_path.glob("*/*.nc")
+    (shard,) = tmp_path.glob("*/*.npz")
     other = shard.parent.with_name("0" * 16)
     shard.parent.rename(other)
-    assert removable_files(tmp_path, None) == {other / shard.name: OTHER_SOLVER}
+    former = (other / shard.name).with_suffix(".nc")
+    former.touch()
+    assert removable_files(tmp_path, None) == {
+        other / shard.name: OTHER_SOLVER,
+        former: OTHER_SOLVER,
+    }

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 from contextlib import closing
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ import impactlab as il
 from impactlab.simulate import case_table
 from impactlab.study import store
 from impactlab.study.inventory import removable_files
-from impactlab.study.netcdf import KEY, Shard
+from impactlab.study.shard import KEY, Shard
 from impactlab.study.solvers import kernels
 from impactlab.study.store import (
     OutputSpec,
@@ -51,7 +52,10 @@ def found_keys(shards):
 
 
 def test_what_was_written_is_read_to_the_bit(shards):
-    keys, columns, _ = written(shards, cases(0.5, 1.0, 2.0))
+    keys, columns, path = written(shards, cases(0.5, 1.0, 2.0))
+    path.unlink()
+    columns["key"] = np.array([3.0, 2.0, 1.0])  # as a response may be named
+    shards.write(keys, columns)
     ((found, read),) = shards.read()
     assert found.tobytes() == keys.tobytes()
     assert read.keys() == columns.keys()
@@ -88,6 +92,16 @@ def swapped(path, other):
     shutil.copy(other, path)
 
 
+def stripped(path, other):
+    with ZipFile(path) as shard:
+        columns = {name: shard.read(name) for name in shard.namelist()[:-1]}
+        comment = shard.comment
+    with ZipFile(path, "w") as shard:
+        shard.comment = comment
+        for name, content in columns.items():
+            shard.writestr(name, content)
+
+
 def foreign(path, other):
     xr.Dataset({"key": ("run", [1.0])}).to_netcdf(path)
 
@@ -101,7 +115,7 @@ def folder(path, other):
     path.mkdir()
 
 
-@pytest.mark.parametrize("damage", [truncated, flipped, swapped, foreign, empty, folder])
+@pytest.mark.parametrize("damage", [truncated, flipped, swapped, stripped, foreign, empty, folder])
 def test_damaged_shards_are_named_and_set_aside(shards, damage, caplog):
     keys, _, other = written(shards, cases(0.5))
     _, _, path = written(shards, cases(1.0))
@@ -186,7 +200,7 @@ def crashing(path, missing_ok=False):
 
 def test_what_was_not_written_to_its_end_is_cleared(shards):
     *_, path = written(shards, cases(0.5))
-    (path.parent / f".some.nc.{32 * 'a'}").write_bytes(b"half")
+    (path.parent / f".some.npz.{32 * 'a'}").write_bytes(b"half")
     assert len(list(shards.recover())) == 1
     assert list(path.parent.iterdir()) == [path]
 
@@ -299,8 +313,8 @@ def test_what_people_left_among_shards_stays_as_it_is(shards, caplog):
     _, _, path = written(shards, cases(0.5, 1.0))
     (path.parent / ".notes").write_text("mine")
     (path.parent / ".cache").mkdir()
-    (path.parent / "folder.nc").mkdir()
-    (path.parent / "copy.nc").write_bytes(path.read_bytes())
+    (path.parent / "folder.npz").mkdir()
+    (path.parent / "copy.npz").write_bytes(path.read_bytes())
     before = sorted(path.parent.iterdir())
     assert [found.size for found in shards.recover()] == [2]
     assert sorted(path.parent.iterdir()) == before

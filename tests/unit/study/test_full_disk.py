@@ -53,7 +53,7 @@ def test_a_shard_on_a_full_disk_is_told_and_the_others_stay(tiny_disk):
     shards = Shards(tiny_disk, OutputSpec(0, False), "version")
     keys = np.array([bytes([at]) * 16 for at in range(200)], dtype="S16")
     shards.write(keys[:2], {"status": np.zeros(2)})
-    with pytest.raises(OSError, match=r"\.nc: could not be written .* are free .* needed"):
+    with pytest.raises(OSError, match=r"\.npz: could not be written .* are free .* needed"):
         shards.write(keys, {"contact_force": np.zeros((200, 1000))})
     (kept,) = Shards(tiny_disk, OutputSpec(0, False), "version").recover()
     assert kept.tobytes() == keys[:2].tobytes()
