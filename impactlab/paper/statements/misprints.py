@@ -103,7 +103,7 @@ def march(beam: Beam, nodes: int, dt: float, steps: int, sign: float = 1.0) -> F
         "the contact ω² ≤ 16 (EI)q/(ρA dx⁴) + k (1/(ρA dx) + 1/m)"
     ),
 )
-def time_step(case: str, data: Data, limit: Callable[[Beam, int], float]) -> Assessment:
+def time_step(data: Data, limit: Callable[[Beam, int], float]) -> Assessment:
     """Judge a step, given as a function of the beam and the number of nodes."""
     beam, nodes, steps = paper_impact().beam, 601, 20
     dt = 0.99 * limit(beam, nodes)  # the printed rule says “less than”
@@ -116,7 +116,6 @@ def time_step(case: str, data: Data, limit: Callable[[Beam, int], float]) -> Ass
         Number(f"deflection after {steps} steps over that after 1", grown, "1"),
     )
     return judged(
-        case,
         numbers,
         frequency * dt <= 2.0 and grown < 1e3,
         "The solution stays bounded.",
@@ -136,7 +135,7 @@ def time_step(case: str, data: Data, limit: Callable[[Beam, int], float]) -> Ass
     cases=(("as printed, − M_xx", -1.0), ("as in Eq. 4, + M_xx", 1.0)),
     holds="ρA w_tt = F + M_xx, as in its own Eq. 4",
 )
-def moment_sign(case: str, data: Data, sign: float) -> Assessment:
+def moment_sign(data: Data, sign: float) -> Assessment:
     """Judge the sign of the moment's second derivative."""
     beam, nodes, steps = paper_impact().beam, 601, 20
     dt = 0.99 * bending_step(beam, nodes)
@@ -149,7 +148,7 @@ def moment_sign(case: str, data: Data, sign: float) -> Assessment:
     )
     stands = factor <= 1.0 and grown < steps  # an impulse spreads; it adds up at most
     why = "The solution stays bounded."
-    return judged(case, numbers, stands, why, "Every mode grows exponentially: no beam does this.")
+    return judged(numbers, stands, why, "Every mode grows exponentially: no beam does this.")
 
 
 @statement(
@@ -166,7 +165,7 @@ def moment_sign(case: str, data: Data, sign: float) -> Assessment:
     ),
     holds="w_tt at n, both times",
 )
-def acceleration_time(case: str, data: Data, acceleration: Callable[[float], float]) -> Assessment:
+def acceleration_time(data: Data, acceleration: Callable[[float], float]) -> Assessment:
     """Judge what is taken for the acceleration of a step at t = 0, with omega = 1."""
     errors = []
     for dt in (1e-2, 5e-3):
@@ -175,7 +174,7 @@ def acceleration_time(case: str, data: Data, acceleration: Callable[[float], flo
     order = math.log2(errors[0] / errors[1])
     off = f"The error is of order {order:.1f}."
     numbers = (Number("observed order", order, "1"),)
-    return judged(case, numbers, round(order) == 2, "The step is of second order.", off)
+    return judged(numbers, round(order) == 2, "The step is of second order.", off)
 
 
 @statement(
@@ -194,7 +193,7 @@ def acceleration_time(case: str, data: Data, acceleration: Callable[[float], flo
     ),
     holds="R_e = √(3 F_m/(4 E*)) (R*/δ_y)^(3/4), that is R_e/R* = √(F_m/F_y)",
 )
-def unloading_radius(case: str, data: Data, outer: float, inner: float) -> Assessment:
+def unloading_radius(data: Data, outer: float, inner: float) -> Assessment:
     """Judge R_e = (3 F_m/(4 E*))^outer (R*/delta_y)^inner, in SI numbers."""
     law = stronge_impact(paper_impact())
     ratio = law.effective_radius / law.yield_indentation
@@ -207,7 +206,6 @@ def unloading_radius(case: str, data: Data, outer: float, inner: float) -> Asses
         shares.append(float(force / peak))
     worst = max(abs(share - 1.0) for share in shares)
     return judged(
-        case,
         (Number("unloading over loading force at 65 µm", shares[0], "1"),),
         worst <= EQUAL,
         "Loading and unloading forces agree, with this form alone.",
@@ -222,14 +220,14 @@ def unloading_radius(case: str, data: Data, outer: float, inner: float) -> Asses
     cases=(("as printed", 1.0), ("with δ in the place of δ_y", 0.0)),
     holds="F = (4/3) E* √R* δ^(3/2)",
 )
-def elastic_phase(case: str, data: Data, begins: float) -> Assessment:
+def elastic_phase(data: Data, begins: float) -> Assessment:
     """Judge the expression; begins: its depth over delta_y where the contact begins."""
     law = stronge_impact(paper_impact())
     stiffness = hertz.stiffness(law.effective_modulus, law.effective_radius)
     first, last = (stiffness * (share * law.yield_indentation) ** 1.5 for share in (begins, 1.0))
     numbers = (Number("force at δ = 0", first, "N"), Number("force at δ = δ_y", last, "N"))
     constant = "The printed expression is a constant, not a force law."
-    return judged(case, numbers, first == 0.0 < last, "It grows from zero.", constant)
+    return judged(numbers, first == 0.0 < last, "It grows from zero.", constant)
 
 
 @statement(
@@ -242,7 +240,7 @@ def elastic_phase(case: str, data: Data, begins: float) -> Assessment:
     cases=(("density 7800 kg/m³, 27.8 × 60 × 780 mm", 10.929),),
     holds="10.148 kg; a beam of 840 mm would have 10.929 kg",
 )
-def beam_mass(case: str, data: Data, printed: float) -> Assessment:
+def beam_mass(data: Data, printed: float) -> Assessment:
     """Judge the `printed` mass in kg."""
     beam = paper_impact().beam
     mass = beam.mass_per_length * beam.span
@@ -254,7 +252,7 @@ def beam_mass(case: str, data: Data, printed: float) -> Assessment:
     )
     off = printed / mass - 1.0
     why = f"Printed and computed mass differ by {100 * off:.1f} % of the latter."
-    return judged(case, numbers, abs(printed - mass) <= share * mass, why)
+    return judged(numbers, abs(printed - mass) <= share * mass, why)
 
 
 @statement(
@@ -267,13 +265,13 @@ def beam_mass(case: str, data: Data, printed: float) -> Assessment:
     cases=(("the often quoted 84 δ_y", 84.0), ("by continuity", 0.5 * (U_PLASTIC + 1.0))),
     holds="continuity: ln(u) = 3 (2.8 − 1.1), δ/δ_y = 82.511",
 )
-def fully_plastic(case: str, data: Data, depth: float) -> Assessment:
+def fully_plastic(data: Data, depth: float) -> Assessment:
     """Judge a depth over the yield indentation at which the phase would begin."""
     u = 2.0 * depth - 1.0
     jump = HARDNESS / CONSTRAINT / (1.0 + math.log(u) / (3.0 * CONSTRAINT)) - 1.0
     numbers = (Number("δ/δ_y", depth, "1"), Number("jump of the force", jump, "1", percent=True))
     jumps = "The force jumps there."
-    return judged(case, numbers, abs(jump) <= EQUAL, "The two forces agree.", jumps)
+    return judged(numbers, abs(jump) <= EQUAL, "The two forces agree.", jumps)
 
 
 @statement(
@@ -286,7 +284,7 @@ def fully_plastic(case: str, data: Data, depth: float) -> Assessment:
     cases=READINGS_OF_P,
     holds="2 Lobatto points are 3 times too stiff; with 3 the section yields all at once",
 )
-def few_points(case: str, data: Data, rule: str, points: int, literal: bool) -> Assessment:
+def few_points(data: Data, rule: str, points: int, literal: bool) -> Assessment:
     """Judge an integration rule by its stiffness and its plastic moment."""
     beam = paper_impact().beam
     # At a thousand times that of first yield every fibre but one on the axis has yielded.
@@ -299,7 +297,7 @@ def few_points(case: str, data: Data, rule: str, points: int, literal: bool) -> 
     )
     wrong = [name for name, ratio in ratios.items() if abs(ratio - 1.0) > EQUAL]
     off = f"Not exact: {', '.join(wrong)}."
-    return judged(case, numbers, not wrong, "Both are exact.", off, literal=literal)
+    return judged(numbers, not wrong, "Both are exact.", off, literal=literal)
 
 
 @statement(
@@ -312,7 +310,7 @@ def few_points(case: str, data: Data, rule: str, points: int, literal: bool) -> 
     cases=(("Stronge's law",),),
     holds="the coefficient is above 1 for small δ_m/δ_y: the law itself creates energy there",
 )
-def restitution(case: str, data: Data) -> Assessment:
+def restitution(data: Data) -> Assessment:
     """Judge the law by the works of its loading and unloading."""
     law = stronge_impact(paper_impact())
     ratios = np.geomspace(1.0, 300.0, 4001)[1:]
@@ -321,11 +319,11 @@ def restitution(case: str, data: Data) -> Assessment:
     above = restitution > 1.0
     largest = Number("largest restitution", float(restitution.max()), "1")
     if not above.any():
-        return Assessment(case, (largest,), Ruling.HOLDS, "It is at most 1.")
+        return Assessment((largest,), Ruling.HOLDS, "It is at most 1.")
     end = float(ratios[above].max())
     numbers = (largest, Number("δ_m/δ_y up to which it is above 1", end, "1", end * 0.0015))
     why = "The law creates energy in shallow contacts; the energy audit of the runs counts it."
-    return Assessment(case, numbers, Ruling.FAILS, why)
+    return Assessment(numbers, Ruling.FAILS, why)
 
 
 @statement(
@@ -336,11 +334,11 @@ def restitution(case: str, data: Data) -> Assessment:
     studies=("fig05",),
     holds="an impact has several sub-impacts: state which contact is meant (here the first)",
 )
-def sub_impacts(case: str, data: Data) -> Assessment:
+def sub_impacts(data: Data) -> Assessment:
     """Judge the largest number of contacts."""
     runs = runs_of(data, "fig05")
     where = {"contact": "stronge"} if "contact" in runs.dims else {}
     count = float(select_response(runs, "number_of_contacts", **where).max())
     number = Number(f"contacts within {float(runs['duration']) * 1e3:g} ms", count, "1")
     again = "The beam comes back and strikes the sphere again."
-    return judged(case, (number,), count == 1.0, "There is one.", again)
+    return judged((number,), count == 1.0, "There is one.", again)

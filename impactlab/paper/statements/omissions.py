@@ -54,7 +54,7 @@ _LIMITS = (
     cases=_CASES,
     studies=(EFFECTS_STUDY,),
 )
-def shear(case: str, data: Data, velocity: float, limit: float) -> Assessment:
+def shear(data: Data, velocity: float, limit: float) -> Assessment:
     """Judge what shear and rotary inertia change."""
     runs = runs_of(data, EFFECTS_STUDY)
     gaps = []
@@ -64,15 +64,15 @@ def shear(case: str, data: Data, velocity: float, limit: float) -> Assessment:
             for model in ("timoshenko", BEAM)
         )
         gaps.append(with_shear.relative_to(without, f"change of the {label}"))
-    return _judge_changes(case, gaps, limit)
+    return _judge_changes(gaps, limit)
 
 
-def _judge_changes(case: str, gaps: Sequence[Number], limit: float) -> Assessment:
+def _judge_changes(gaps: Sequence[Number], limit: float) -> Assessment:
     """Judge changes of responses against the limit of a reading."""
     small = all(gap.within(limit) for gap in gaps)
     worst = max(gaps, key=lambda gap: abs(gap.value))
     why = f"The largest is the {worst.name}, {labels.number(100 * worst.value, 2)} %."
-    return judged(case, tuple(gaps), small, why, literal=not limit)
+    return judged(tuple(gaps), small, why, literal=not limit)
 
 
 @statement(
@@ -87,7 +87,7 @@ def _judge_changes(case: str, gaps: Sequence[Number], limit: float) -> Assessmen
     cases=_CASES,
     studies=(EFFECTS_STUDY,),
 )
-def strain_rate(case: str, data: Data, velocity: float, limit: float) -> Assessment:
+def strain_rate(data: Data, velocity: float, limit: float) -> Assessment:
     """Judge what a yield stress that depends on the strain rate changes."""
     runs = runs_of(data, EFFECTS_STUDY)
     if "beam_rate_coefficient" not in runs.dims:
@@ -104,7 +104,7 @@ def strain_rate(case: str, data: Data, velocity: float, limit: float) -> Assessm
         low, high = min(gap.low for gap in rated), max(gap.high for gap in rated)
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         gaps.append(Number(f"change of the {label}", middle, "1", half, percent=True))
-    return _judge_changes(case, gaps, limit)
+    return _judge_changes(gaps, limit)
 
 
 @statement(
@@ -117,7 +117,7 @@ def strain_rate(case: str, data: Data, velocity: float, limit: float) -> Assessm
     cases=(("this project's two models",),),
     studies=(MESHES_STUDY,),
 )
-def run_time(case: str, data: Data) -> Assessment:
+def run_time(data: Data) -> Assessment:
     """Judge the processor times of the beam and of the 3-D model."""
     runs = runs_of(data, MESHES_STUDY)
     if "processor_time" not in runs or "element_size" not in runs.dims:
@@ -133,7 +133,7 @@ def run_time(case: str, data: Data) -> Assessment:
         numbers.append(Number(f"3-D, elements of {size}", solid / 60.0, "min"))
         numbers.append(Number(f"times the beam's ({size})", solid / beam, "1"))
     why = "Finite elements take many times as long, on every mesh."
-    return judged(case, tuple(numbers), beam < float(times.min()), why, "The beam takes longer.")
+    return judged(tuple(numbers), beam < float(times.min()), why, "The beam takes longer.")
 
 
 def _beam_time(duration: float) -> float:

@@ -53,12 +53,12 @@ _HOW_FAR = (
     cases=AWAY,
     studies=(LATE, EARLY),
 )
-def elastic_to_5(case: str, data: Data, study: str, response: str, literal: bool) -> Assessment:
+def elastic_to_5(data: Data, study: str, response: str, literal: bool) -> Assessment:
     """Judge the largest strain up to 5 m/s."""
     largest = _largest_to_5(data, study, response)
     elastic = "No fibre there yields on any grid."
     yields = "Some fibre there yields."
-    return judged(case, (largest,), largest.high == 0.0, elastic, yields, literal=literal)
+    return judged((largest,), largest.high == 0.0, elastic, yields, literal=literal)
 
 
 def _largest_to_5(data: Data, study: str, response: str) -> Number:
@@ -87,18 +87,16 @@ def _largest_to_5(data: Data, study: str, response: str) -> Number:
     ),
     studies=(LATE, EARLY, SOLID_STUDY),
 )
-def peak_under_impact(
-    case: str, data: Data, study: str, response: str, literal: bool
-) -> Assessment:
+def peak_under_impact(data: Data, study: str, response: str, literal: bool) -> Assessment:
     """Judge whether any fibre, or element about the contact, yields up to 5 m/s."""
     if study == SOLID_STUDY:
-        return _solid_peak(case, data)
+        return _solid_peak(data)
     largest = _largest_to_5(data, study, response)
     none = "No fibre yields on any grid: the curves are zero, and have no peak."
-    return judged(case, (largest,), largest.low > 0.0, "Some fibre yields.", none, literal=literal)
+    return judged((largest,), largest.low > 0.0, "Some fibre yields.", none, literal=literal)
 
 
-def _solid_peak(case: str, data: Data) -> Assessment:
+def _solid_peak(data: Data) -> Assessment:
     """Judge the 3-D model's runs up to 5 m/s, on every mesh."""
     runs = runs_of(data, SOLID_STUDY)
     low = [float(v) for v in runs["velocity"].values if v <= 5.0]
@@ -112,7 +110,7 @@ def _solid_peak(case: str, data: Data) -> Assessment:
     )
     stands = float(peaks.min()) > 0.0 == float(remotes.max())
     why = "All that yields lies about the contact."
-    return judged(case, numbers, stands, why, "Something else yields, or nothing.", literal=False)
+    return judged(numbers, stands, why, "Something else yields, or nothing.", literal=False)
 
 
 def _profile(data: Data, study: str, velocity: float) -> tuple[Any, Any]:
@@ -145,12 +143,7 @@ def _strain_beyond(data: Data, velocity: float, depths: float) -> Number:
 
 
 def _judge_limit(
-    case: str,
-    data: Data,
-    velocity: float,
-    place: float | tuple[str, str],
-    literal: bool,
-    below: bool,
+    data: Data, velocity: float, place: float | tuple[str, str], literal: bool, below: bool
 ) -> Assessment:
     """Judge the strain below the limit, or above it; unknown where U encloses the limit."""
     if isinstance(place, tuple):
@@ -167,10 +160,10 @@ def _judge_limit(
             "The limit lies within the uncertainty: a perfectly plastic hinge has no limit in the "
             "nodes. Runs with the steel's hardening, which the paper does not give, would decide."
         )
-        return Assessment(case, (strain,), Ruling.UNKNOWN, why)
+        return Assessment((strain,), Ruling.UNKNOWN, why)
     side = "below" if under else "above"
     why = f"{100 * strain.value:.2g} % lies {side} the limit by more than its uncertainty."
-    return judged(case, (strain,), under is below, why, literal=literal)
+    return judged((strain,), under is below, why, literal=literal)
 
 
 def _limit_cases(velocity: float, below: bool, everywhere: bool) -> tuple[Case, ...]:
@@ -221,9 +214,7 @@ above_limit_at_15 = _strain_statement(
     cases=AWAY,
     studies=(LATE, EARLY),
 )
-def plasticity_begins(
-    case: str, data: Data, study: str, response: str, literal: bool
-) -> Assessment:
+def plasticity_begins(data: Data, study: str, response: str, literal: bool) -> Assessment:
     """Judge the velocities that enclose the first yield farther than a depth from the impact."""
     curve = response_curve(data, study, response)
     first = int(np.argmax([number.value > 0 for number in curve.values()]))
@@ -232,4 +223,4 @@ def plasticity_begins(
     below, above = list(curve)[first - 1 : first + 1]
     onset = Number("velocity at first yield", 0.5 * (below + above), "m s-1", 0.5 * (above - below))
     why = f"No plastic strain at {below:g} m/s, some at {above:g} m/s."
-    return judged(case, (onset,), below >= 5.0 and above <= 10.0, why, literal=literal)
+    return judged((onset,), below >= 5.0 and above <= 10.0, why, literal=literal)

@@ -67,7 +67,7 @@ def _response_groups(data: Data, study: str) -> Iterator[Case]:
     cases=partial(_response_groups, study=NODES_STUDY),
     studies=(NODES_STUDY,),
 )
-def nodes_suffice(case: str, data: Data, velocity: float, names: tuple[str, ...]) -> Assessment:
+def nodes_suffice(data: Data, velocity: float, names: tuple[str, ...]) -> Assessment:
     """Judge 601 nodes by the error of each response."""
     errors, needed = zip(*(_nodes_error(data, velocity, name) for name in names), strict=True)
     if unbounded := [error for error in errors if np.isnan(error.uncertainty)]:
@@ -76,7 +76,7 @@ def nodes_suffice(case: str, data: Data, velocity: float, names: tuple[str, ...]
         if not 0.5 * worst.value > TOLERANCE:
             raise UnknownError(f"the {worst.name} is not known: it takes three grids or more")
         why = f"Half of the change to the finest grid exceeds {100 * TOLERANCE:g} %: {worst.name}."
-        return Assessment(case, errors, Ruling.FAILS, why)
+        return Assessment(errors, Ruling.FAILS, why)
     highest = [error.high for error in errors]
     worst, least = names[int(np.argmax(highest))].replace("_", " "), max(needed)
     numbers = (*errors, Number("least nodes for all of them", least, "1"))
@@ -84,7 +84,7 @@ def nodes_suffice(case: str, data: Data, velocity: float, names: tuple[str, ...]
     why = "Every smaller number of nodes in the study falls short."
     if not (exact := least == PRINTED_NODES):
         why = f"Read as “{PRINTED_NODES} are enough”: {least:g} already are."
-    return judged(case, numbers, not max(highest) > TOLERANCE, why, beyond, literal=exact)
+    return judged(numbers, not max(highest) > TOLERANCE, why, beyond, literal=exact)
 
 
 def _nodes_error(data: Data, velocity: float, name: str) -> tuple[Number, float]:
@@ -127,14 +127,14 @@ def _points_cases(data: Data) -> Iterator[Case]:
     studies=(POINTS_STUDY,),
 )
 def points_suffice(
-    case: str, data: Data, where: dict[str, Any], points: int, names: tuple[str, ...], literal: bool
+    data: Data, where: dict[str, Any], points: int, names: tuple[str, ...], literal: bool
 ) -> Assessment:
     """Judge a reading of P = 2 by the error of each response."""
     errors = tuple(_points_error(data, where, points, name) for name in names)
     worst = max(errors, key=lambda error: error.high)
     within = worst.high <= TOLERANCE
     beyond = f"The {worst.name} is {100 * worst.value:,.1f} %."
-    return judged(case, errors, within, "Every error is within 1 %.", beyond, literal=literal)
+    return judged(errors, within, "Every error is within 1 %.", beyond, literal=literal)
 
 
 def _points_error(data: Data, where: dict[str, Any], points: int, name: str) -> Number:
@@ -166,7 +166,7 @@ PRINTED_LAYERS = 0.069  # what the paper says of Zhang's layered beam against fi
     cases=tuple((f"{points} layers over the depth", points) for points in (2, 4, 10, 20)),
     studies=(POINTS_STUDY,),
 )
-def lobatto_is_the_reason(case: str, data: Data, points: int) -> Assessment:
+def lobatto_is_the_reason(data: Data, points: int) -> Assessment:
     """Judge the change from Lobatto's points to so many layers."""
     runs = runs_of(data, POINTS_STUDY)
     gaps = []
@@ -181,4 +181,4 @@ def lobatto_is_the_reason(case: str, data: Data, points: int) -> Assessment:
     largest = max(abs(gap.value) + gap.uncertainty for gap in gaps)
     enough = "The rule may explain the difference."
     less = "No fibre yields: the rule changes the stiffness alone, by far less than 4.5 %."
-    return judged(case, tuple(gaps), largest >= needed, enough, less, literal=False)
+    return judged(tuple(gaps), largest >= needed, enough, less, literal=False)

@@ -6,7 +6,7 @@ Every number has an uncertainty from the convergence in the mesh.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
 
@@ -88,12 +88,15 @@ class Number:
 
 @dataclass(frozen=True)
 class Assessment:
-    """The verdict on one statement in one case, which may be a reading of the paper's words."""
+    """The verdict on one statement in one case, which may be a reading of the paper's words.
 
-    case: str
+    case: in words; those of a judge follow those of its statement.
+    """
+
     numbers: tuple[Number, ...]
     verdict: Ruling
     why: str
+    case: str = ""
 
 
 @dataclass(frozen=True)
@@ -101,8 +104,8 @@ class Statement:
     """A statement of the paper, a misprint, or an observation of ours, with its test.
 
     name: identifies it in the CSV files and in links.
-    judge_case: a function (words of the case, data, the rest of the case) that judges one case; it
-        raises UnknownError where a run is missing.
+    judge_case: a function (data, the case but for its words) that judges one case; it raises
+        UnknownError where a run is missing.
     text: the paper's words in short. test: the formula in words.
     cases: tuples that begin with their words, or a function that returns them for the data.
     studies: names of the studies that it is judged on; empty where closed forms suffice.
@@ -123,10 +126,10 @@ class Statement:
         """Yield one assessment per case: UNKNOWN, with the reason, where a run is missing."""
         for case, *rest in self.cases(data) if callable(self.cases) else self.cases:
             try:
-                assessment = self.judge_case(case, data, *rest)
+                assessment = self.judge_case(data, *rest)
             except UnknownError as reason:
-                assessment = Assessment(case, (), Ruling.UNKNOWN, str(reason))
-            yield assessment
+                assessment = Assessment((), Ruling.UNKNOWN, str(reason))
+            yield replace(assessment, case=", ".join(filter(None, (case, assessment.case))))
 
 
 def statement(**fields: Any) -> Callable[[Callable[..., Assessment]], Statement]:
@@ -135,7 +138,6 @@ def statement(**fields: Any) -> Callable[[Callable[..., Assessment]], Statement]
 
 
 def judged(
-    case: str,
     numbers: tuple[Number, ...],
     stands: bool,
     why: str,
@@ -148,8 +150,8 @@ def judged(
     otherwise: what is said where the statement does not stand, if not the same.
     """
     if not stands:
-        return Assessment(case, numbers, Ruling.FAILS, otherwise or why)
-    return Assessment(case, numbers, Ruling.HOLDS if literal else Ruling.READING, why)
+        return Assessment(numbers, Ruling.FAILS, otherwise or why)
+    return Assessment(numbers, Ruling.HOLDS if literal else Ruling.READING, why)
 
 
 def runs_of(data: Data, study: str) -> xr.Dataset:

@@ -165,7 +165,7 @@ def _impulses(data: Data) -> tuple[Number, ...]:
     ),
     studies=(FIRST_CONTACT, MESHES),
 )
-def force_history(case: str, data: Data, measure: str) -> Assessment:
+def force_history(data: Data, measure: str) -> Assessment:
     """Judge a measure of the difference at the paper's velocity."""
     if measure == "peak":
         numbers = _gap(data, VELOCITY, "peak_force")
@@ -176,7 +176,7 @@ def force_history(case: str, data: Data, measure: str) -> Assessment:
     gap = numbers[-1]
     stands = gap.within(PRINTED_DIFFERENCE)
     why = f"{_spelled(gap)}: {'compatible with' if stands else 'more than'} 2.4 %."
-    return judged(case, numbers, stands, why, literal=measure == "L2")
+    return judged(numbers, stands, why, literal=measure == "L2")
 
 
 @statement(
@@ -192,12 +192,12 @@ def force_history(case: str, data: Data, measure: str) -> Assessment:
     ),
     studies=(FIRST_CONTACT,),
 )
-def deflection_history(case: str, data: Data, limit: float) -> Assessment:
+def deflection_history(data: Data, limit: float) -> Assessment:
     """Judge the histories of the deflection at mid-span."""
     gap = _distance(data, "midspan_deflection", _largest)
     stands = gap.within(limit)
     why = f"{_spelled(gap)} of the largest deflection."
-    return judged(case, (gap,), stands, why, literal=False)
+    return judged((gap,), stands, why, literal=False)
 
 
 def _velocities(data: Data) -> Iterator[Case]:
@@ -217,13 +217,13 @@ def _velocities(data: Data) -> Iterator[Case]:
     cases=_velocities,
     studies=(FIRST_CONTACT, MESHES),
 )
-def duration_of_witness(case: str, data: Data, velocity: float) -> Assessment:
+def duration_of_witness(data: Data, velocity: float) -> Assessment:
     """Judge the durations of the first contact."""
     numbers = _gap(data, velocity, "contact_duration")
     gap = numbers[-1]
     stands = gap.within(0.0)
     why = f"{_spelled(gap)}: {'compatible' if stands else 'more than the uncertainty'}."
-    return judged(case, numbers, stands, why, literal=False)
+    return judged(numbers, stands, why, literal=False)
 
 
 PRINTED_EXTENT = 1.52e-3  # extent of the plastic zone in figure 9, m
@@ -263,14 +263,14 @@ def _zone_extent(data: Data, variable: str, factor: float) -> Number:
     cases=(*((place, *zone) for place, zone in _ZONE.items()), ("the contact's radius", "", 1.0)),
     studies=(FIRST_CONTACT, MESHES),
 )
-def plastic_zone_extent(case: str, data: Data, variable: str, factor: float) -> Assessment:
+def plastic_zone_extent(data: Data, variable: str, factor: float) -> Assessment:
     """Judge a variable of the runs; factor: from it to the extent from the centre."""
     reach = _zone_extent(data, variable, factor) if variable else _contact_radius(data, 1.0)
     gap = abs(reach.value - PRINTED_EXTENT)
     stands = gap <= reach.uncertainty
     margin = "within" if stands else "more than"
     why = f"It differs by {1e3 * gap:.2f} mm, {margin} the uncertainty."
-    return judged(case, (reach,), stands, why, literal=False)
+    return judged((reach,), stands, why, literal=False)
 
 
 @statement(
@@ -287,16 +287,16 @@ def plastic_zone_extent(case: str, data: Data, variable: str, factor: float) -> 
     ),
     studies=(FIRST_CONTACT, MESHES),
 )
-def plastic_zone_place(case: str, data: Data, factor: float | None) -> Assessment:
+def plastic_zone_place(data: Data, factor: float | None) -> Assessment:
     """Judge the zone beside the contact's radius; factor: of R delta under the root."""
     if factor is None:
         runs, _ = _refined_runs(data)
         remote = select_response(runs, "remote_plastic_strain", velocity=VELOCITY, beam_model=SOLID)
         largest = Number("largest PEEQ beyond one depth", float(remote.max()), "1", percent=True)
         why = "No element there yields on any mesh."
-        return judged(case, (largest,), largest.value == 0.0, why, "Some do.", literal=False)
+        return judged((largest,), largest.value == 0.0, why, "Some do.", literal=False)
     reach, radius = _zone_extent(data, "plastic_zone_radius", 1.0), _contact_radius(data, factor)
     stands = reach.low <= radius.high
     why = "The zone's edge may lie under the contact."
     beyond = "It reaches beyond the contact."
-    return judged(case, (reach, radius), stands, why, beyond, literal=False)
+    return judged((reach, radius), stands, why, beyond, literal=False)

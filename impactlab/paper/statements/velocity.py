@@ -44,7 +44,7 @@ def _contact_laws(data: Data) -> Iterator[tuple[str, str]]:
     cases=_contact_laws,
     studies=(CONTACT_STUDY,),
 )
-def duration_falls(case: str, data: Data, law: str) -> Assessment:
+def duration_falls(data: Data, law: str) -> Assessment:
     """Judge the fall from each velocity to the next."""
     curve = response_curve(data, CONTACT_STUDY, "contact_duration", contact=law)
     speeds, durations = list(curve), list(curve.values())
@@ -55,10 +55,10 @@ def duration_falls(case: str, data: Data, law: str) -> Assessment:
         replace(durations[i], name=f"contact duration at {speeds[i]:g} m/s")
         for i in dict.fromkeys((0, count, len(falls)))
     )
-    case = f"{case}, {speeds[0]:g} to {speeds[-1]:g} m/s"
+    speed_range = f"{speeds[0]:g} to {speeds[-1]:g} m/s"
     if count == len(falls):
         why = f"It falls at every one of the {count} steps."
-        return Assessment(case, numbers, Ruling.HOLDS, why)
+        return Assessment(numbers, Ruling.HOLDS, why, speed_range)
     last, after = durations[count : count + 2]
     change = "rises" if after.low > last.high else "does not fall by more than its uncertainty"
     why = f"It falls up to {speeds[count]:g} m/s and {change} from there to "
@@ -66,7 +66,7 @@ def duration_falls(case: str, data: Data, law: str) -> Assessment:
     merges = after.value > 1.25 * last.value  # a second push with the first
     why += ": the sphere no longer lifts off between two pushes." if merges else "."
     outcome = Ruling.READING if count else Ruling.FAILS
-    return Assessment(case, numbers, outcome, why)
+    return Assessment(numbers, outcome, why, speed_range)
 
 
 @statement(
@@ -79,7 +79,7 @@ def duration_falls(case: str, data: Data, law: str) -> Assessment:
     cases=_contact_laws,
     studies=(CONTACT_STUDY,),
 )
-def above_spring_mass(case: str, data: Data, law: str) -> Assessment:
+def above_spring_mass(data: Data, law: str) -> Assessment:
     """Judge the durations of both models under the same contact law."""
     if "beam_model" not in runs_of(data, CONTACT_STUDY).dims:
         raise UnknownError(f"the study {CONTACT_STUDY} does not vary beam_model")
@@ -103,11 +103,11 @@ def above_spring_mass(case: str, data: Data, law: str) -> Assessment:
         for name, (ratio, width) in ends.items()
     )
     if not lower:
-        return Assessment(case, numbers, Ruling.HOLDS, "It is above at every velocity.")
+        return Assessment(numbers, Ruling.HOLDS, "It is above at every velocity.")
     if not higher:
-        return Assessment(case, numbers, Ruling.FAILS, "It is above at no velocity.")
+        return Assessment(numbers, Ruling.FAILS, "It is above at no velocity.")
     why = f"Above at {', '.join(higher)} m/s, not at {', '.join(lower)}."
-    return Assessment(case, numbers, Ruling.READING, why)
+    return Assessment(numbers, Ruling.READING, why)
 
 
 @statement(
@@ -123,7 +123,7 @@ def above_spring_mass(case: str, data: Data, law: str) -> Assessment:
     ),
     studies=(CONTACT_STUDY,),
 )
-def indentation_grows(case: str, data: Data, law: str, left: bool) -> Assessment:
+def indentation_grows(data: Data, law: str, left: bool) -> Assessment:
     """Judge the growth from each velocity to the next; left: of what the contact leaves."""
     curve = response_curve(data, CONTACT_STUDY, "maximum_indentation", contact=law)
     if left:
@@ -140,7 +140,7 @@ def indentation_grows(case: str, data: Data, law: str, left: bool) -> Assessment
     ]
     shrinks = f"It does not from {', '.join(steps)} m/s."
     why = "It grows at every step."
-    return judged(case, numbers, not steps, why, shrinks, literal=law == "stronge")
+    return judged(numbers, not steps, why, shrinks, literal=law == "stronge")
 
 
 def _low_velocities(data: Data) -> Iterator[tuple[str, float]]:
@@ -166,7 +166,7 @@ def _low_velocities(data: Data) -> Iterator[tuple[str, float]]:
     cases=_low_velocities,
     studies=(CONTACT_STUDY,),
 )
-def both_laws_measured(case: str, data: Data, velocity: float) -> Assessment:
+def both_laws_measured(data: Data, velocity: float) -> Assessment:
     """Judge the difference between both laws' durations."""
     hertz, stronge = (
         response_curve(data, CONTACT_STUDY, "contact_duration", contact=law)[velocity]
@@ -174,7 +174,7 @@ def both_laws_measured(case: str, data: Data, velocity: float) -> Assessment:
     )
     gap = hertz.relative_to(stronge, "Hertz's duration over Stronge's, less 1")
     why = f"Both hold only if durations are measured no better than ± {50 * abs(gap.value):.0f} %."
-    return judged(case, (gap,), gap.within(0.0), "The laws agree.", why)
+    return judged((gap,), gap.within(0.0), "The laws agree.", why)
 
 
 @statement(
@@ -183,7 +183,7 @@ def both_laws_measured(case: str, data: Data, velocity: float) -> Assessment:
     cases=(("Stronge contact, velocities of figure 8",),),
     studies=(CONTACT_STUDY,),
 )
-def duration_measured(case: str, data: Data) -> Assessment:
+def duration_measured(data: Data) -> Assessment:
     """Return our durations with what would judge them."""
     curve = response_curve(data, CONTACT_STUDY, "contact_duration", contact="stronge")
     numbers = tuple(
@@ -194,4 +194,4 @@ def duration_measured(case: str, data: Data) -> Assessment:
         "The measured points of figure 8, read off with their scatter, would decide; this project "
         "has the text alone."
     )
-    return Assessment(case, numbers, Ruling.UNKNOWN, why)
+    return Assessment(numbers, Ruling.UNKNOWN, why)

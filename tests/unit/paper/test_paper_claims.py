@@ -51,7 +51,7 @@ def test_a_statement_is_summed_up_from_its_cases():
         (Ruling.UNKNOWN, Ruling.UNKNOWN): "cannot be judged",
     }
     for found, expected in verdicts.items():
-        assert _summary([Assessment("", (), each, "") for each in found]) == expected
+        assert _summary([Assessment((), each, "") for each in found]) == expected
 
 
 def _rows(path):

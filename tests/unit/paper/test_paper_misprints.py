@@ -44,8 +44,8 @@ def test_forces_of_the_printed_radii():
 
 
 def test_a_right_mass_would_pass():
-    assert misprints.beam_mass.judge_case("", {}, 10.15).verdict == HOLDS
-    assert misprints.beam_mass.judge_case("", {}, 10.40).verdict == FAILS
+    assert misprints.beam_mass.judge_case({}, 10.15).verdict == HOLDS
+    assert misprints.beam_mass.judge_case({}, 10.40).verdict == FAILS
 
 
 def test_one_contact_would_pass(grid_runs):
