@@ -6,7 +6,6 @@ steps in time. It is no dependency: pip install 'impactlab[kratos]'.
 
 from __future__ import annotations
 
-import json
 import time
 from dataclasses import KW_ONLY, dataclass
 from importlib import import_module
@@ -15,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from impactlab.fem3d.solver import Mesh, PatchTooSmallError
 from impactlab.fem3d.solver.march import History, Moment, Progress
@@ -261,57 +261,16 @@ class Run:
 
 def settings(duration: float, time_step: float, penalty: float) -> str:
     """Return project parameters in Kratos' JSON; arguments in s, s and N/m3."""
-    problem = {
-        "problem_name": "impact",
-        "parallel_type": "OpenMP",
-        "start_time": 0.0,
-        "end_time": duration - 0.5 * time_step,
-        "echo_level": 0,
-    }
-    solver = {
-        "solver_type": "Dynamic",
-        "model_part_name": PART,
-        "domain_size": 3,
-        "echo_level": 0,
-        "time_integration_method": "implicit",
-        "scheme_type": "bossak",
-        "damp_factor_m": -0.3,  # Kratos' own choice; it damps what a step cannot resolve
-        "analysis_type": "non_linear",
-        "model_import_settings": {"input_type": "use_input_model_part"},
-        "time_stepping": {"time_step": time_step},
-        "compute_reactions": False,
-        "reform_dofs_at_each_step": True,
-        "convergence_criterion": "contact_residual_criterion",
-        "residual_relative_tolerance": RESIDUAL_RATIO,
-        "residual_absolute_tolerance": 1e-3,
-        "max_iteration": 10,
-        "contact_settings": {
-            "mortar_type": "PenaltyContactFrictionless",
-            "fancy_convergence_criterion": False,
-        },
-        "linear_solver_settings": {
-            "solver_type": "amgcl",
-            "smoother_type": "ilu0",
-            "krylov_type": "gmres",
-            "coarsening_type": "aggregation",
-            "tolerance": 1e-7,
-            "max_iteration": 300,
-        },
-    }
-    contact = {
-        "python_module": "penalty_contact_process",
-        "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication",
-        "process_name": "PenaltyContactProcess",
-        "Parameters": {
-            "model_part_name": PART,
-            "contact_model_part": {"0": [SPHERE_BOTTOM, BEAM_TOP]},
-            "assume_master_slave": {"0": [SPHERE_BOTTOM]},
-            "contact_type": "Frictionless",
-            "advance_ALM_parameters": {"manual_ALM": True, "penalty": penalty * N_PER_MM3},
-        },
-    }
-    processes = {"contact_process_list": [contact]}
-    return json.dumps({"problem_data": problem, "solver_settings": solver, "processes": processes})
+    templates = Environment(loader=PackageLoader("impactlab.fem3d"), undefined=StrictUndefined)
+    return templates.get_template("kratos.json.j2").render(
+        part=PART,
+        sphere=SPHERE_BOTTOM,
+        beam=BEAM_TOP,
+        end_time=duration - 0.5 * time_step,
+        time_step=time_step,
+        residual_ratio=RESIDUAL_RATIO,
+        penalty=penalty * N_PER_MM3,
+    )
 
 
 def fill(engine: Kratos, part: Any, mesh: Mesh, impact: Impact) -> None:
