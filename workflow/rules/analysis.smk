@@ -4,7 +4,7 @@
 # Of a sample indices.csv, indices.nc, distribution.csv and surrogate.nc come with it: no outputs, for a grid has none.
 rule analysis:
     input:
-        code=code(*MODEL, "analysis/**/*.py", "fem3d/element_size.py"),
+        code=code(*MODEL, "analysis/**/*.py", "fem3d/study_rules.py"),
         runs="results/{study}/runs.nc",
         resolution=where("resolution.nc", "sample", "auto"),
         refinement=where("refinement.nc", "sobol"),
