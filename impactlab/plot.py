@@ -125,7 +125,7 @@ def response(
             analysis = compared(runs, analysis, read_measurements(measurements, runs))
         label = grids.response_curves(ax, runs, analysis, name, along, selected)
         if hue:
-            ax.legend(title=labels.sentence(labels.parameter(hue)))
+            ax.legend(title=labels.sentence(labels.parameter(runs[hue])))
     across = samples.axis_label(along) if sample else grids.parameter_axis(along)
     ax.set(xlabel=across, ylabel=label)
     return ax
@@ -255,7 +255,7 @@ def _indices(name: str, size: str) -> _Draw:
             )
         listed = [str(label) for label in analysis["response"].values]
         stand_ins = {
-            label: ((), np.nan, {"units": str(unit)})
+            label: ((), np.nan, analysis.attrs | {"units": str(unit)})
             for label, unit in zip(listed, analysis["response_units"].values, strict=True)
         }
         runs = xr.Dataset(stand_ins, attrs={"responses": listed})  # their names and units are used

@@ -188,6 +188,14 @@ VARIABLES = RESPONSES | _OF_WINGS | HISTORIES | PROFILES | COORDINATES
 """Every variable but those of bits (FLAGS) and the varied parameters (for these see PARAMETERS)."""
 
 
+def of_function(data: xr.Dataset | xr.DataArray) -> bool:
+    """Return whether a dataset, or a variable of one, is of a function in place of the solver.
+
+    Its names mean what their attributes say; they are none of the quantities in these tables.
+    """
+    return "function" in data.attrs
+
+
 def attributes(name: str) -> dict[str, Any]:
     """Return CF attributes of a variable, parameter or flag. Raises KeyError if unknown."""
     if name in FLAGS:

@@ -151,7 +151,10 @@ def indices(runs: xr.Dataset, parameters: list[str]) -> xr.Dataset:
         "second_order_interval": (pair, np.full_like(second, 0.02)),
         "sensitivity_verdict": flags(verdict, "usable", "constant", "failed_runs"),
     }
-    coords = {"response": list(RESPONSES), "parameter": parameters, "other_parameter": parameters}
+    coords: dict[str, Any] = {"response": list(RESPONSES)}
+    coords |= {"parameter": parameters, "other_parameter": parameters}
+    long_names = [runs[name].attrs["long_name"] for name in parameters]
+    coords["parameter_long_name"] = ("parameter", long_names)
     return xr.Dataset(variables, coords, runs.attrs)
 
 

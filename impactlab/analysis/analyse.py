@@ -12,6 +12,7 @@ from impactlab.analysis import ANALYSES
 from impactlab.analysis.numerical import numerical
 from impactlab.methods.runs import labels
 from impactlab.methods.verdict import with_numerical_error
+from impactlab.variables import of_function
 
 
 def analyse(
@@ -54,13 +55,23 @@ def analyse(
             "the runs are not those of a study: analyse what il.Study(...).run() gives"
         )
     names = {str(name) for name in np.atleast_1d(runs.attrs.get("analyses", list(ANALYSES)))}
-    plan: Any = runs.attrs.get("method"), runs.sizes, True
+    axes = {} if of_function(runs) else runs.sizes  # a function has no discretisation
+    plan: Any = runs.attrs.get("method"), axes, True
     entries = [ANALYSES[name] for name in ANALYSES if name in names]
     listed = (resolve_name(entry.place) for entry in entries if entry.possible(*plan))
     parts = [module.analysis(runs) for module in listed if module.applies(runs)]
     requested = xr.Dataset(coords=labels(runs))
     merged = xr.merge([requested, *parts], join="exact", compat="equals", combine_attrs="override")
+    if "parameter" in merged.coords:
+        long_names = [_long_name(runs, str(name)) for name in merged["parameter"].values]
+        merged = merged.assign_coords(parameter_long_name=("parameter", long_names))
     if resolution is not None or refinement is not None:
         merged = merged.merge(numerical(runs, merged, resolution, refinement), join="exact")
         merged = with_numerical_error(merged)
     return merged.assign_attrs(runs.attrs).drop_encoding()
+
+
+def _long_name(runs: xr.Dataset, factor: str) -> str:
+    """Return the meaning of a parameter, or the name of a group of them in words."""
+    attrs = runs[factor].attrs if factor in runs.coords else {}
+    return str(attrs.get("long_name", factor.replace("_", " ")))

@@ -17,7 +17,7 @@ import xarray as xr
 
 from impactlab.methods.runs import usable
 from impactlab.model.parameters import REFINEMENTS
-from impactlab.variables import FAILED, MARKED, reasons
+from impactlab.variables import FAILED, MARKED, of_function, reasons
 from impactlab.verdicts import Verdict, flagged
 
 COVERAGE = 2.0
@@ -195,7 +195,7 @@ def same(condition: Any, other: Any) -> bool:
 def _finest(array: xr.DataArray) -> xr.DataArray:
     """Return the values on the finest grid."""
     for dim, refinement in REFINEMENTS.items():
-        if dim in array.dims:
+        if dim in array.dims and not of_function(array[dim]):
             finest = refinement.finest_first(array[dim].values)[0]
             array = array.isel({dim: int(finest)}, drop=True)
     return array
@@ -203,6 +203,8 @@ def _finest(array: xr.DataArray) -> xr.DataArray:
 
 def _numerical(analysis: xr.Dataset, name: str, runs: xr.Dataset) -> xr.DataArray:
     """Return the relative numerical uncertainty on the finest grid; NaN where nothing bounds it."""
+    if of_function(runs):  # which has no discretisation
+        return xr.DataArray(0.0)
     total, judged = xr.DataArray(0.0), False
     for dim, (axis, _) in REFINEMENTS.items():
         if runs.sizes.get(dim, 1) == 1:

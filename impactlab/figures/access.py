@@ -10,9 +10,10 @@ from statistics import NormalDist
 import numpy as np
 import xarray as xr
 
+from impactlab import wings
 from impactlab.figures import labels
 from impactlab.model.parameters import PARAMETERS
-from impactlab.variables import FAILED, RESPONSES, reasons, status_bits
+from impactlab.variables import FAILED, RESPONSES, of_function, reasons, status_bits
 
 SAMPLED = ("time", "x", "z")
 """Dimensions within a run; every other dimension of a variable of runs.nc is the design's."""
@@ -32,10 +33,12 @@ def varied(runs: xr.Dataset) -> list[str]:
 def responses(runs: xr.Dataset) -> list[str]:
     """Return the names of the stored responses, in the order of the table of variables.
 
-    Those that the table does not know, the responses of another solver, come last.
+    Those that the table does not know come last; those of a function are in the study's order.
     """
-    unlisted = [name for name in names(runs, "responses") if name not in RESPONSES]
-    return [name for name in [*RESPONSES, *unlisted] if name in runs.data_vars]
+    listed = names(runs, "responses")
+    if not of_function(runs):
+        listed = [*RESPONSES, *(name for name in listed if name not in RESPONSES)]
+    return [name for name in listed if name in runs.data_vars]
 
 
 def known(analysis: xr.Dataset, response: str) -> bool:
@@ -61,9 +64,13 @@ def physical(runs: xr.Dataset) -> list[str]:
         name
         for name in varied(runs)
         if runs[name].dtype.kind in "if"
-        # parameters of functions, which are not in the table, are physical
-        and (name not in PARAMETERS or PARAMETERS[name].path[0] == "impact")
+        and (of_function(runs) or PARAMETERS[name].path[0] == "impact")
     ]
+
+
+def further_models(runs: xr.Dataset) -> list[wings.Model]:
+    """Return the models of wings that some of the runs have."""
+    return [] if of_function(runs) else wings.among(runs.coords.get("beam_model", ""))
 
 
 def count(runs: xr.Dataset) -> int:

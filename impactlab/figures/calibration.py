@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from impactlab.analysis.measurements import COVERAGE
 from impactlab.analysis.posterior import SILENT
-from impactlab.figures import labels, scales, style
+from impactlab.figures import labels, measures, scales, style
 from impactlab.solver.contact import CONTACT_LAWS
 
 _BINS = 25
@@ -22,12 +22,12 @@ _PRIOR = "0.75"
 @style.paper
 def calibration(results: xr.Dataset) -> Figure:
     """Draw a panel per parameter, one of all predictions, and one of the contact laws' weights."""
-    names = [str(name) for name in results["parameter"].values]
+    meanings = measures.meanings(results)
     laws = results.sizes["model"] > 1
-    figure, axes = style.panels(len(names) + 1 + laws, columns=3, height=50)
-    for ax, name in zip(axes, names, strict=False):
-        _parameter(ax, results.sel(parameter=name))
-    _predictions(axes[len(names)], results)
+    figure, axes = style.panels(len(meanings) + 1 + laws, columns=3, height=50)
+    for number, meaning in enumerate(meanings):
+        _parameter(axes[number], results.isel(parameter=number), meaning)
+    _predictions(axes[len(meanings)], results)
     if laws:
         order = np.argsort(results["model_weight"].values, kind="stable")
         rows = np.arange(order.size)
@@ -38,19 +38,17 @@ def calibration(results: xr.Dataset) -> Figure:
     return style.finish(figure)
 
 
-def _parameter(ax: Axes, marginal: xr.Dataset) -> None:
+def _parameter(ax: Axes, marginal: xr.Dataset, meaning: str) -> None:
     """Draw the posterior's histogram over the density of the prior."""
-    name, units = (
-        str(marginal["parameter"].item()),
-        {"units": str(marginal["parameter_units"].item())},
-    )
-    unit = labels.display(xr.DataArray(marginal["prior_draws"].values, name=name, attrs=units))
+    name, attrs = str(marginal["parameter"].item()), dict(marginal.attrs)
+    attrs["units"] = str(marginal["parameter_units"].item())
+    unit = labels.display(xr.DataArray(marginal["prior_draws"].values, name=name, attrs=attrs))
     prior, posterior = unit(marginal["prior_draws"].values), unit(marginal["draws"].values)
     bins: Any = np.linspace(prior.min(), prior.max(), _BINS + 1).tolist()
     ax.hist(prior, bins=bins, density=True, label="before the data", color=_PRIOR)
     look: Any = {"histtype": "step", "linewidth": 1.5, "color": style.COLOURS[0]}
     ax.hist(posterior, bins=bins, density=True, label="given the data", **look)
-    ax.set(xlabel=labels.wrapped_axis(labels.parameter(name), unit.symbol), yticks=[])
+    ax.set(xlabel=labels.wrapped_axis(meaning, unit.symbol), yticks=[])
     ax.set_ylabel("probability density")
     scales.linear(ax, "x", 4)
     single = np.isfinite(marginal["mode_weight"]).sum() == 1

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import xarray as xr
 
-from impactlab import wings
 from impactlab.analysis.distribution import limits
 from impactlab.figures import (
     access,
@@ -18,6 +17,7 @@ from impactlab.figures import (
 )
 from impactlab.figures.record import Figure
 from impactlab.methods import FAMILIES
+from impactlab.variables import of_function
 
 ANSWERS = (
     grids.contact_laws,
@@ -39,6 +39,12 @@ ANSWERS = (
     distributions.response_distributions,
     distributions.cumulative_distributions,
 )
+OF_FUNCTIONS = (
+    grids.parameter_effects,
+    distributions.response_distributions,
+    distributions.cumulative_distributions,
+)
+"""Those of the answers of a function in place of the solver; the others are of impacts."""
 INDICES = (
     indices.index_bars(measures.SOBOL),
     indices.sobol_second_order,
@@ -61,9 +67,10 @@ CATALOGUE = {figure.name: figure for figure in (*ANSWERS, *INDICES)}
 
 def applicable(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Figure]:
     """Return the figures that apply to a study, by name, in the order of the report."""
-    further = wings.among(runs.coords.get("beam_model", ""))
+    further = access.further_models(runs)
     of_wings = (figure for model in further for figure in model.part("figures").values())
+    answers = OF_FUNCTIONS if of_function(runs) else ANSWERS
     scatters = map(samples.scatter, access.responses(runs))
     beyond = [distributions.exceedance(name) for name in limits(runs) if name in runs]
-    everything = (*of_wings, *beyond, *ANSWERS, *scatters, *INDICES)
+    everything = (*of_wings, *beyond, *answers, *scatters, *INDICES)
     return {figure.name: figure for figure in everything if figure.applies(runs, analysis)}

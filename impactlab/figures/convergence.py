@@ -111,7 +111,7 @@ def nodes_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 )
 def time_step_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw against the Courant number."""
-    label = labels.axis(labels.parameter("courant"), "")
+    label = labels.axis(labels.parameter(runs["courant"]), "")
     return draw(runs, analysis, _TIME_STEP, runs["courant"].values.astype(float), label)
 
 
@@ -311,7 +311,7 @@ def points_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         scales.at(ax, "x", points)
         ax.set_xlim(0.9 * points.min(), 1.1 * points.max())
         _draw_tolerance(ax)
-    return selected.finish(figure, labels.axis(labels.parameter("points"), ""), _DIFFERENCE)
+    return selected.finish(figure, labels.axis(labels.parameter(runs["points"]), ""), _DIFFERENCE)
 
 
 def _draw_tolerance(ax: Axes) -> None:

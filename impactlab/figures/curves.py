@@ -13,13 +13,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab import wings
 from impactlab.analysis.measurements import COVERAGE, Agreement
 from impactlab.figures import access, labels, scales, style
 from impactlab.figures.access import design_dims, usable
 from impactlab.figures.labels import Display
 from impactlab.model.parameters import REFINEMENTS
 from impactlab.types import Floats
+from impactlab.variables import of_function
 
 _JUMP, _FEW_STEPS = 5.0, 4
 _MOST = 6  # largest number of panels, and of curves if no other is asked for
@@ -50,17 +50,19 @@ class Choice:
 class Plan:
     """The panels and curves of a figure.
 
-    shown: positions by dimension. held: dimensions fixed at one position.
+    shown: positions by dimension. held: dimensions fixed at one position. meanings: of the
+    dimensions shown.
     """
 
     panels: list[Choice]
     curves: list[Choice]
     shown: dict[str, list[int]]
     held: dict[str, int]
+    meanings: list[str]
 
     def finish(self, figure: Figure, x: str = "", y: str = "") -> Figure:
         """Add the legend, headed by the parameters in which curves differ; x, y: for all panels."""
-        title = labels.sentence(", ".join(labels.parameter(dim) for dim in self.shown))
+        title = labels.sentence(", ".join(self.meanings))
         order = [*(curve.label for curve in self.curves), *_WORDS.values()]
         return style.finish(figure, x, y, title=title, order=order)
 
@@ -94,8 +96,7 @@ def plan(
     rank = {dim: position for position, dim in enumerate(prefer)}
     left = sorted((dim for dim in dims if dim != panel), key=lambda dim: rank.get(dim, len(rank)))
     # beside a wing's runs, as no model there is refined by what refines the other
-    mixed = wings.among(runs.get("beam_model", ""))
-    finest = REFINEMENTS.keys() - {*prefer} if mixed else set()
+    finest = REFINEMENTS.keys() - {*prefer} if access.further_models(runs) else set()
     several = [dim for dim in left if runs.sizes[dim] > 1 and dim not in finest]
     shown: dict[str, list[int]] = {}
     # the first of at most two dimensions leaves room for two values of the second
@@ -112,12 +113,13 @@ def plan(
         label = ", ".join(labels.value(runs[dim], position) for dim, position in where.items())
         colour, line = (*ordinals, *ordinals, 0, 0)[:2]
         curves.append(Choice(held | where | single, label, (colour, line)))
-    return Plan(panels, curves, shown, held)
+    return Plan(panels, curves, shown, held, [labels.parameter(runs[dim]) for dim in shown])
 
 
 def _held(coordinate: xr.DataArray) -> int:
     """Return the position of the finest numerics, the middle number, or the first name."""
-    if refinement := REFINEMENTS.get(str(coordinate.name)):
+    refinement = REFINEMENTS.get(str(coordinate.name))
+    if refinement and not of_function(coordinate):
         return int(refinement.finest_first(coordinate.values)[0])
     return coordinate.size // 2 if coordinate.dtype.kind in "if" else 0
 

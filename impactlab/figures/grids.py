@@ -215,7 +215,7 @@ def _plan_effects(runs: xr.Dataset) -> Plan:
     "",
     lambda runs, analysis: _along(runs) is not None and bool(responses(runs)),
     lambda runs, analysis: (
-        f"Responses against the {labels.parameter(str(_along(runs)))}; where curves coincide, the "
+        f"Responses against the {labels.parameter(runs[_along(runs)])}; where curves coincide, the "
         "first in the legend lies on top. A jump is not joined.",
         _plan_effects(runs).note(runs),
         curves.note_measured(analysis, responses(runs), str(_along(runs))),
@@ -253,7 +253,7 @@ def response_curves(
 
 def parameter_axis(along: xr.DataArray) -> str:
     """Return the label of an axis of a parameter."""
-    return labels.axis(labels.parameter(str(along.name)), display(along).symbol)
+    return labels.axis(labels.parameter(along), display(along).symbol)
 
 
 @record.figure(

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from impactlab.figures import access, labels, measures, record, responses_grid, scales, style
 from impactlab.figures.labels import Display, display
-from impactlab.figures.measures import MORRIS, analysed, parameters
+from impactlab.figures.measures import MORRIS, analysed, meanings
 from impactlab.figures.panel import name_places
 from impactlab.figures.record import Figure
 from impactlab.methods import verdict_name
@@ -93,7 +93,7 @@ def bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
 
     Pairs of measures are dark and light; the verdict is drawn where it is a warning.
     """
-    shown, listed = family.measures_in(analysis), parameters(analysis)
+    shown, listed = family.measures_in(analysis), meanings(analysis)
     judged = verdict_name(analysis, lambda record: record.family == family)
     rows, count = np.arange(len(listed)), len(shown)
     colours = style.COLOURS if count < 4 else ("#0072B2", "#56B4E9", "#D55E00", "#E69F00")
@@ -116,7 +116,7 @@ def bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
     else:
         verdict = access.verdict(analysis, judged, response)
         style.remark(ax, f"undefined:\n{verdict.words if verdict else 'no reason is given'}")
-    name_places(ax, "y", list(map(labels.parameter, listed)))
+    name_places(ax, "y", listed)
     ax.tick_params(axis="y", length=0)
     ax.grid(visible=False, axis="y")
     ax.set_ylim(len(rows) - 0.5, -0.5)
@@ -158,10 +158,10 @@ def index_convergence(measure: Measure) -> Figure:
         samples = analysis[_SAMPLES].values
         for name, ax in axes.items():
             indices = analysis.sel(response=name)
-            for number, parameter in enumerate(parameters(analysis)):
+            for number, parameter in enumerate(meanings(analysis)):
                 index = indices[[variable, f"{variable}_interval"]].isel(parameter=number)
                 y, margin = (array.values for array in index.values())
-                look = style.distinct(number) | {"label": labels.parameter(parameter)}
+                look = style.distinct(number) | {"label": parameter}
                 _line_with_band(ax, samples, y, margin, markersize=2.5, **look)
             if not ax.lines:
                 style.remark(ax, "no finite values")
@@ -201,7 +201,7 @@ def _pair_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, s
 )
 def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response, a cell per pair, all on one colour scale."""
-    significant, listed = _significant_pairs(runs, analysis), parameters(analysis)
+    significant, listed = _significant_pairs(runs, analysis), meanings(analysis)
     figure, axes = responses_grid.panels(list(significant), 12 + 4.6 * len(listed), beneath=14)
     values = {name: pairs(analysis[_PAIRS].sel(response=name)) for name in significant}
     # no weaker than _WEAK, to keep noise pale
@@ -257,9 +257,7 @@ def _number(ax: Axes, listed: list[str], *, named: bool) -> None:
     """Write numbers along rows and columns, and the names of the parameters beside the rows."""
     count = len(listed)
     numbers = [str(number) for number in range(1, count + 1)]
-    rows = [
-        f"{labels.parameter(name)} {number}" for name, number in zip(listed, numbers, strict=True)
-    ]
+    rows = [f"{parameter} {number}" for parameter, number in zip(listed, numbers, strict=True)]
     ax.set_yticks(range(count), rows if named else numbers)
     ax.set_xticks(range(count), numbers)
     ax.set(xlim=(-0.5, count - 0.5), ylim=(count - 0.5, -0.5), aspect="auto")
@@ -294,11 +292,11 @@ def plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> No
     effects = xr.DataArray(strength.values, attrs=runs[response].attrs, name=response)
     unit = display(effects)
     x, y, margin = unit(strength.values), unit(spread), unit(strength.margins)
-    for number, name in enumerate(parameters(analysis)):
+    for number, parameter in enumerate(meanings(analysis)):
         if np.isfinite(y[number]):  # a group has no spread of its own
             xerr = margin[number] if np.isfinite(margin[number]) else None
             look = style.distinct(number) | {"linestyle": "", "elinewidth": 0.8}
-            ax.errorbar(x[number], y[number], xerr=xerr, label=labels.parameter(name), **look)
+            ax.errorbar(x[number], y[number], xerr=xerr, label=parameter, **look)
     responses_grid.write_verdict(ax, analysis, _VERDICT, response, sound=False)
     if not ax.lines:
         responses_grid.empty(ax, "no finite values")
@@ -352,12 +350,12 @@ def indices_over_time(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
 def _at_times(ax: Axes, history: xr.Dataset, order: str, time: Display) -> None:
     """Draw a line with its band per parameter; gaps where there is no index, or no interval."""
     x = time(history["time"].values)
-    for number, name in enumerate(parameters(history)):
+    for number, parameter in enumerate(meanings(history)):
         indices = history.isel(parameter=number)
         margin = indices[f"{order}_interval"].values
         y = np.where(np.isfinite(margin), indices[order].values, np.nan)
         look = style.distinct(number) | {"marker": "", "linewidth": 0.9}
-        _line_with_band(ax, x, y, margin, label=labels.parameter(name), **look)
+        _line_with_band(ax, x, y, margin, label=parameter, **look)
     if not ax.lines:
         style.remark(ax, "no finite values")
     low, high = ax.get_ylim()

@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike
 from impactlab import wings
 from impactlab.methods import METHODS
 from impactlab.methods.distributions import CHOICE
-from impactlab.model.parameters import PARAMETERS
 from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.types import Floats
+from impactlab.variables import of_function
 
 _STEPS: dict[str, tuple[tuple[float, float, str], ...]] = {
     "N": ((100.0, 1e-3, "kN"), (0.0, 1.0, "N")),
@@ -76,7 +76,7 @@ def display(array: xr.DataArray) -> Display:
     A plastic strain is shown in %; a unit that is not in the table is shown as it is stored.
     """
     units = str(array.attrs.get("units", "1"))
-    if "plastic_strain" in str(array.name) and units == "1":
+    if "plastic_strain" in str(array.name) and units == "1" and not of_function(array):
         return Display(100.0, "%")
     numbers = array.data if array.dtype.kind in "if" and array.size else np.zeros(1)
     largest = float(np.where(np.isfinite(numbers), np.abs(numbers), 0.0).max())  # also of dask's
@@ -95,9 +95,9 @@ def beam_model(name: str) -> str:
     return further.label if further else "-".join(map(str.capitalize, name.split("_")))
 
 
-def parameter(name: str) -> str:
+def parameter(coordinate: xr.DataArray) -> str:
     """Return a parameter's meaning: "yield stress of the beam"."""
-    return PARAMETERS[name].long_name if name in PARAMETERS else name.replace("_", " ")
+    return str(coordinate.attrs.get("long_name") or response(str(coordinate.name)))
 
 
 def method(name: str) -> str:
@@ -176,11 +176,12 @@ def values(coordinate: xr.DataArray, where: Iterable[int], *, short: bool = Fals
 
 
 def _spelled(coordinate: xr.DataArray, word: str, *, short: bool = False) -> str:
-    if coordinate.name == "contact":
+    name = "" if of_function(coordinate) else coordinate.name
+    if name == "contact":
         return CONTACT_LAWS[word].short if short else CONTACT_LAWS[word].title
-    if coordinate.name == "beam_model":
+    if name == "beam_model":
         return beam_model(word)
-    return _RULES.get(word, word.replace("_", " "))
+    return _RULES[word] if name == "rule" else word.replace("_", " ")
 
 
 def words(coordinate: xr.DataArray) -> list[str]:
@@ -202,7 +203,7 @@ def value(coordinate: xr.DataArray, position: int) -> str:
     name, text = str(coordinate.name), values(coordinate, [position])[0]
     if name == "run":
         return f"run {text}"
-    counted = name in PARAMETERS and PARAMETERS[name].is_integer
+    counted = name in ("nodes", "points") and not of_function(coordinate)
     return f"{text} {name}" if counted else text + unit(coordinate)
 
 
@@ -212,7 +213,7 @@ def setting(coordinate: xr.DataArray, where: Iterable[int]) -> str:
     if any(", " in text for text in texts):
         texts = [f"“{text}”" for text in texts]
     listed = listing(texts)
-    return f"{parameter(str(coordinate.name))} = {listed}{unit(coordinate)}"
+    return f"{parameter(coordinate)} = {listed}{unit(coordinate)}"
 
 
 def fixed(runs: xr.Dataset) -> str:

@@ -107,6 +107,11 @@ def parameters(analysis: xr.Dataset) -> list[str]:
     return [str(name) for name in analysis["parameter"].values]
 
 
+def meanings(analysis: xr.Dataset) -> list[str]:
+    """Return the meanings of the varied parameters, or the names of their groups in words."""
+    return [str(text) for text in analysis.get("parameter_long_name", analysis["parameter"]).values]
+
+
 def index(analysis: xr.Dataset, measure: str, response: str) -> Index:
     """Return one measure of one response."""
 

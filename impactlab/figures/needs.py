@@ -12,6 +12,7 @@ from impactlab.figures import access, labels
 from impactlab.figures.access import usable
 from impactlab.figures.measures import analysed
 from impactlab.model.parameters import REFINEMENTS
+from impactlab.variables import of_function
 from impactlab.verdicts import TOLERANCE
 
 ORDERED = {dim: axis for dim, (axis, _) in REFINEMENTS.items() if dim != "points"}
@@ -88,6 +89,8 @@ _WORDS = {
 
 def needed(runs: xr.Dataset, analysis: xr.Dataset) -> Needs | None:
     """Return the grids that a study needs, None where no axis was judged."""
+    if of_function(runs):
+        return None
     axes = []
     for dim, axis in REFINED.items():
         if dim in runs.dims:

@@ -94,7 +94,7 @@ def along_parameters(
 
 def axis_label(column: xr.DataArray) -> str:
     """Return the label of the axis of a parameter, with a unit where it takes numbers."""
-    text, symbol = labels.parameter(str(column.name)), display(column).symbol
+    text, symbol = labels.parameter(column), display(column).symbol
     return labels.sentence(text) if labels.words(column) else labels.wrapped_axis(text, symbol)
 
 
@@ -288,7 +288,8 @@ def _distances(runs: xr.Dataset) -> dict[str, float]:
 
 
 def _map_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
-    entries = [f"{labels.parameter(name)} {value:.2f}" for name, value in _distances(runs).items()]
+    distances = _distances(runs).items()
+    entries = [f"{labels.parameter(runs[name])} {value:.2f}" for name, value in distances]
     return [
         f"The {int(access.failed(runs).sum())} failed runs among the good ones (at most "
         f"{_DRAWN['failed']} and {_DRAWN['good']} are drawn), over the parameters whose values "

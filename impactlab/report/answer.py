@@ -20,6 +20,7 @@ from impactlab.report import effects, measured, ranking
 from impactlab.report.distribution import limit_entries
 from impactlab.report.regimes import regime_entries
 from impactlab.report.sensitivity import history_entries, shared, uncertainty
+from impactlab.variables import of_function
 from impactlab.verdicts import TOLERANCE
 from impactlab.verification.finding import gravest_first
 from impactlab.verification.outcomes import unpacked
@@ -84,7 +85,7 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None) -> tuple[str, list[li
     if analysis is None:
         headline, findings = _verification(runs)
         return headline, [[entry] for entry in findings[: LINES - 1]], ""
-    shown = [name for name in responses(runs) if name != "energy_error"] or responses(runs)
+    shown = _stated(runs)
     if not shown:
         return "There is no answer in these runs", [], ""
     if (families := measures.families(runs, analysis)) and analysed(runs, analysis):
@@ -107,6 +108,14 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None) -> tuple[str, list[li
     before, after = _packed(first, 2), _packed(over, 1 if findings or first else 2)
     lines = [*before, *_packed(findings, room - len(before) - len(after)), *after]
     return headline, [*lines, last] if last else lines, note
+
+
+def _stated(runs: xr.Dataset) -> list[str]:
+    """Return the responses that an answer may state: of impacts, the energy error if alone."""
+    names = responses(runs)
+    if of_function(runs):
+        return names
+    return [name for name in names if name != "energy_error"] or names
 
 
 def _asked(runs: xr.Dataset, names: list[str]) -> str:
@@ -151,13 +160,13 @@ def _of_grid(
     lead, note, findings = _asked(runs, shown), "", list[Entry]()
     if is_sample(runs):
         return effects.spread(runs, lead), effects.ranges(runs, [n for n in shown if n != lead]), ""
-    if len(shown) > 2 * LINES:
+    if len(shown) > 2 * LINES and not of_function(runs):
         shown = [name for name in shown if name not in _MINOR or name == lead]
     if needs is not None:
         findings = [("Convergence", _convergence(needs, lead)[0])]
         runs = needs.runs.isel({axis: [0] for axis in needs.axes})
         note = "Effects are those on the finest grid."
-    elif "nodes" in runs.coords and "numerical_uncertainty" not in analysis:
+    elif not of_function(runs) and "numerical_uncertainty" not in analysis:
         note = "The numerical uncertainty is not known: impactlab recommend measures it."
     headline = effects.headline(runs, lead)
     return headline, [*effects.entries(runs, analysis, lead, shown), *findings], note

@@ -11,7 +11,7 @@ import xarray as xr
 
 from impactlab.analysis.measurements import COVERAGE
 from impactlab.analysis.posterior import CONTRADICTED, FEWEST, NEGLIGIBLE, SILENT, STRONG
-from impactlab.figures import labels
+from impactlab.figures import labels, measures
 from impactlab.figures.calibration import calibration
 from impactlab.figures.draw import save
 from impactlab.solver.contact import CONTACT_LAWS
@@ -37,18 +37,18 @@ def _sentences(results: xr.Dataset) -> Iterator[str]:
             "parameters in the sampled ranges reproduce them within their uncertainties. Do not "
             "use the numbers below; state the model's own error (--model-error) if it is known."
         )
-    silent, names = [], [str(name) for name in results["parameter"].values]
-    for name in names:
-        marginal = results.sel(parameter=name)
+    silent, meanings = [], measures.meanings(results)
+    for number, meaning in enumerate(meanings):
+        marginal = results.isel(parameter=number)
         if np.isfinite(marginal["mode_weight"]).sum() > 1:
-            yield f"{labels.sentence(labels.parameter(name))}: {_modes(marginal)}"
+            yield f"{labels.sentence(meaning)}: {_modes(marginal)}"
             continue
         if (ratio := float(marginal["spread_ratio"])) >= SILENT:
-            silent.append(f"{labels.parameter(name)} (spread {ratio:.2f} of the prior's)")
+            silent.append(f"{meaning} (spread {ratio:.2f} of the prior's)")
             continue
         ends = " to ".join(_value(marginal, key) for key in ("posterior_low", "posterior_high"))
         yield (
-            f"{labels.sentence(labels.parameter(name))}: {_value(marginal, 'posterior_mean')}"
+            f"{labels.sentence(meaning)}: {_value(marginal, 'posterior_mean')}"
             f"{_unit(marginal)} ± {_value(marginal, 'posterior_deviation')} (standard deviation; "
             f"95 %: {ends}); before the data {_value(marginal, 'prior_mean')} ± "
             f"{_value(marginal, 'prior_deviation')}."
@@ -57,8 +57,8 @@ def _sentences(results: xr.Dataset) -> Iterator[str]:
         yield f"The data cannot tell {labels.listing(silent)}."
     correlation = results["posterior_correlation"].values
     pairs = [
-        f"{' and '.join(labels.parameter(names[i]) for i in pair)} ({correlation[pair]:+.2f})"
-        for pair in combinations(range(len(names)), 2)
+        f"{' and '.join(meanings[i] for i in pair)} ({correlation[pair]:+.2f})"
+        for pair in combinations(range(len(meanings)), 2)
         if abs(correlation[pair]) >= STRONG
     ]
     if pairs:
@@ -115,7 +115,7 @@ def _modes(marginal: xr.Dataset) -> str:
 
 def _mean(marginal: xr.Dataset) -> xr.DataArray:
     """Return the posterior mean of a parameter as labels take it, in whose unit all is shown."""
-    attrs = {"units": str(marginal["parameter_units"].item())}
+    attrs = marginal.attrs | {"units": str(marginal["parameter_units"].item())}
     name = str(marginal["parameter"].item())
     return xr.DataArray(float(marginal["posterior_mean"]), name=name, attrs=attrs)
 
@@ -138,11 +138,11 @@ def _model(law: xr.Dataset) -> str:
     if doubt:
         return f"{text} (though {doubt})"
     texts = []
-    for name in law["parameter"].values if weight >= NEGLIGIBLE else ():
-        marginal = law.sel(parameter=name)
+    for number, meaning in enumerate(measures.meanings(law) if weight >= NEGLIGIBLE else ()):
+        marginal = law.isel(parameter=number)
         if float(marginal["model_deviation"] / marginal["prior_deviation"]) < SILENT:
             texts.append(
-                f"{labels.parameter(str(name))} {_value(marginal, 'model_mean')}{_unit(marginal)}"
+                f"{meaning} {_value(marginal, 'model_mean')}{_unit(marginal)}"
                 f" ± {_value(marginal, 'model_deviation')}"
             )
     return f"{text} ({', '.join(texts)})" if texts else text

@@ -12,7 +12,7 @@ from impactlab.figures.access import count, responses, usable
 from impactlab.methods.distributions import CHOICE
 from impactlab.report.regimes import regime_doubt
 from impactlab.solver.contact import CONTACT_LAWS, LAWS
-from impactlab.variables import MARKS, OUTSIDE_DATA, WARNINGS
+from impactlab.variables import MARKS, OUTSIDE_DATA, WARNINGS, of_function
 
 _OF_THE_CONTACT = {"peak_force", "maximum_indentation", "permanent_indentation"}
 _ENERGY_LIMIT = 1e-3
@@ -21,7 +21,7 @@ _ENERGY_LIMIT = 1e-3
 
 def cautions(runs: xr.Dataset) -> Iterator[str]:
     """Yield what holds for a study as a whole; what one response is about stands beside it."""
-    if "status" in runs and "contact" in runs.coords:
+    if "status" in runs and "contact" in runs.coords and not of_function(runs):
         beyond = (runs["status"] & MARKS["outside_contact_law"][0]) != 0
         for law in np.unique(runs["contact"].values).tolist():
             if number := int((beyond & (runs["contact"] == law)).sum()):
@@ -37,8 +37,8 @@ def cautions(runs: xr.Dataset) -> Iterator[str]:
         for word in np.atleast_1d(runs[name].attrs["values"]) if levels else ():
             if word not in levels:
                 yield (
-                    f"No run draws “{word}” for the {labels.parameter(name)}, so rare is it by its "
-                    "weight: what it does is in none of these numbers."
+                    f"No run draws “{word}” for the {labels.parameter(runs[name])}, so rare is it "
+                    "by its weight: what it does is in none of these numbers."
                 )
     for bit, text in WARNINGS.values() if "remarks" in runs else ():
         if number := int(((runs["remarks"] & bit) != 0).sum()):
@@ -57,6 +57,8 @@ def endings(runs: xr.Dataset) -> str:
 
 def beside(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
     """Return what makes the values of one response doubtful; "" where nothing does."""
+    if of_function(runs):
+        return regime_doubt(runs, name)
     values, verdict = usable(runs, name), access.verdict(analysis, "nodes_summary", name)
     if name == "energy_error" and (number := int((values > _ENERGY_LIMIT).sum())):
         return f"above {labels.number(_ENERGY_LIMIT)} in {labels.counted(number, 'run')}"
@@ -76,6 +78,8 @@ _LAST_CONTACT = {"rebound_velocity", "restitution", "impulse", "permanent_indent
 
 def notes(runs: xr.Dataset) -> Iterator[str]:
     """Yield the notes on the physics that matter for these runs."""
+    if of_function(runs):
+        return
     used = {
         name: set(runs[name].values.flat) if name in runs.coords else set()
         for name in ("contact", "scheme", "points", "rule")

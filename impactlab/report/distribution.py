@@ -40,7 +40,7 @@ def limit_entries(runs: xr.Dataset, analysis: xr.Dataset) -> list[tuple[str, str
     """Return one entry per limit: its probability, and the parameters that lead beyond it."""
     entries = []
     for name in limited(runs, analysis):
-        text, led = probability(analysis.sel(response=name)), leading(analysis, name)
+        text, led = probability(analysis.sel(response=name)), leading(runs, analysis, name)
         response = labels.sentence(labels.response(name))
         if led:
             text += f"; runs above it have {led}"
@@ -84,7 +84,7 @@ def _limit(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
     return f"{labels.number(float(unit(limit)))} {unit.symbol}".strip()
 
 
-def leading(analysis: xr.Dataset, name: str) -> str:
+def leading(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
     """Return the parameters that differ most in runs above the limit; "" where none does."""
     statistics = analysis.sel(response=name)
     matters = (statistics["exceedance_p_value"] < significance(analysis)).values
@@ -92,7 +92,7 @@ def leading(analysis: xr.Dataset, name: str) -> str:
     differences = []
     for number in np.argsort(-distances, kind="stable")[:_NAMED].tolist():
         if matters[number]:
-            parameter = labels.parameter(str(statistics["varied_parameter"].values[number]))
+            parameter = labels.parameter(runs[str(statistics["varied_parameter"].values[number])])
             differences.append(
                 f"{_direction(statistics, number)} {parameter} (distance {distances[number]:.2f})"
             )
@@ -121,7 +121,7 @@ def limit_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
         if statistics["exceedance_distance"].notnull().any():
             apart.append([response, *_distances(analysis, statistics)])
     parameters = [
-        labels.sentence(labels.parameter(str(parameter)))
+        labels.sentence(labels.parameter(runs[str(parameter)]))
         for parameter in analysis["varied_parameter"].values
     ]
     level = access.confidence(analysis)

@@ -57,7 +57,7 @@ def headline(runs: xr.Dataset, response: str) -> str:
         return f"The {name} is {_by_word(runs, values, main)}"
     others = [dim for dim in factors if dim != main]
     curves = list(_curves(values, main, others))
-    over = f"From {_ends(runs[main])} of {labels.parameter(main)} the {name}"
+    over = f"From {_ends(runs[main])} of {labels.parameter(runs[main])} the {name}"
     courses = [_course(runs[response], curve) for _, curve in curves]
     if len(curves) <= _SHOWN:
         places = [_place(runs, where) for where, _ in curves]
@@ -74,7 +74,7 @@ def headline(runs: xr.Dataset, response: str) -> str:
         low, high = (_range(runs, ordered.isel({main: end}), "–") for end in (0, -1))
         where = "in every case" if trends == {average} else "on average"
         return f"{over} {average} {where}, from {low} to {high}"
-    listed = labels.listing([labels.parameter(dim) for dim in [main, *others]])
+    listed = labels.listing([labels.parameter(runs[dim]) for dim in [main, *others]])
     return f"The {name}, {span}, depends on {listed} together: none of them alone sets its trend"
 
 
@@ -154,7 +154,7 @@ def _place(runs: xr.Dataset, where: dict[str, int]) -> str:
     for dim, position in where.items():
         value = labels.values(runs[dim], [position], short=True)[0]
         is_number = runs[dim].dtype.kind in "if"
-        value += f"{labels.unit(runs[dim])} of {labels.parameter(dim)}" if is_number else ""
+        value += f"{labels.unit(runs[dim])} of {labels.parameter(runs[dim])}" if is_number else ""
         texts.append(f"{'at' if is_number else 'with'} {value}")
     return " and ".join(texts)
 
@@ -228,7 +228,7 @@ def _trends(runs: xr.Dataset, names: list[str], main: str) -> list[Entry]:
         trends -= {"stays"} if trends - {"stays"} else set()
         trend = trends.pop() if len(trends) == 1 else ("jumps" if "jumps" in trends else _UNCLEAR)
         groups[trend].append(f"{labels.response(name)} ({_range(runs, values)})")
-    subject = f"with {labels.parameter(main)}"
+    subject = f"with {labels.parameter(runs[main])}"
     heads = {trend: f"{word} {subject}" for trend, word in _TRENDS.items()}
     heads |= {_UNCLEAR: f"No single direction {subject}", "stays": f"Do not change {subject}"}
     return [(heads[trend], _listed(groups[trend])) for trend in heads if trend in groups]
@@ -257,7 +257,7 @@ def _factor(runs: xr.Dataset, dim: str, lead: str, shown: list[str]) -> Entry:
     names = [name for name in changes if changes[name] > _NONE]
     names.sort(key=lambda name: (name != lead, -changes[name]))
     if not names:
-        subject = labels.sentence(labels.parameter(dim))
+        subject = labels.sentence(labels.parameter(runs[dim]))
         return subject, f"no effect on any response ({none})"
     texts = [f"{labels.response(name)} {_contrast(runs, name, dim)}" for name in names[:_CONTRASTS]]
     if names[0] != lead:
@@ -267,7 +267,7 @@ def _factor(runs: xr.Dataset, dim: str, lead: str, shown: list[str]) -> Entry:
 
 def _comparison(runs: xr.Dataset, dim: str) -> str:
     """Return a parameter and its first and last value: "Depth of the beam, 8 to 80 mm"."""
-    values, subject = runs[dim], labels.sentence(labels.parameter(dim))
+    values, subject = runs[dim], labels.sentence(labels.parameter(runs[dim]))
     if values.dtype.kind in "if":
         return f"{subject}, {_ends(values)}"
     if values.size > 2:

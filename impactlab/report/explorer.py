@@ -78,7 +78,7 @@ def _parameter(column: xr.DataArray, entry: xr.Dataset) -> dict[str, Any]:
         "highest": highest,
         "range": f"{lowest:.12g} to {highest:.12g} {unit.symbol}".rstrip(),
         "name": str(column.name),
-        "label": labels.sentence(labels.parameter(str(column.name))),
+        "label": labels.sentence(labels.parameter(column)),
         "unit": unit.symbol,
         "si": 1 / unit.scale,
         "polynomials": asdict(kind),

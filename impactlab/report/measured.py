@@ -10,8 +10,8 @@ import xarray as xr
 
 from impactlab.analysis.measurements import Agreement
 from impactlab.figures import labels
-from impactlab.model.parameters import PARAMETERS
 from impactlab.report.page import Cell, Row, Section, Table
+from impactlab.variables import attributes
 
 _LEAD = (
     "Compatible: model and measurement differ by no more than the root sum of squares of the "
@@ -63,17 +63,17 @@ def _relative(row: xr.Dataset, key: str) -> str:
     if measured:
         return f"{labels.number(100 * number / abs(measured), 2)} %"
     quantity, units = (str(row[f"compared_{name}"].item()) for name in ("quantity", "units"))
-    unit = labels.display(xr.DataArray([number], name=quantity, attrs={"units": units}))
+    unit = labels.display(xr.DataArray([number], name=quantity, attrs=row.attrs | {"units": units}))
     return f"{labels.number(float(unit(number)), 2)} {unit.symbol}".rstrip()
 
 
-def sections(analysis: xr.Dataset) -> list[Section]:
+def sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     """Return the section on measurements, or none."""
     if "compared_verdict" not in analysis or not analysis.sizes["comparison"]:
         return []
     verdicts = analysis["compared_verdict"].values
     order = np.argsort((verdicts - 1) % len(Agreement), kind="stable")  # those that agree last
-    rows = [_row(analysis.isel(comparison=number)) for number in order[:_MOST]]
+    rows = [_row(runs, analysis.isel(comparison=number)) for number in order[:_MOST]]
     head = ["Measured", "Conditions", "Model", "Measured value", "Model's value", "Difference"]
     sources = (analysis[f"compared_{key}"].values.tolist() for key in ("source", "simulated"))
     remarks = [
@@ -94,15 +94,16 @@ def _verdict(verdict: Agreement) -> str:
     return verdict.name.lower().replace("_", " ")
 
 
-def _row(row: xr.Dataset) -> Row:
+def _row(runs: xr.Dataset, row: xr.Dataset) -> Row:
     verdict = list(Agreement)[int(row["compared_verdict"])]
     keys = "quantity", "units", "conditions", "case", "reason"
     quantity, units, conditions, case, reason = (str(row[f"compared_{key}"].item()) for key in keys)
     of_numbers = "measured", "uncertainty", "model", "numerical"
     numbers = [row[f"compared_{key}"].item() for key in of_numbers]
-    unit = labels.display(xr.DataArray(numbers[:1], name=quantity, attrs={"units": units}))
+    attrs = row.attrs | {"units": units}
+    unit = labels.display(xr.DataArray(numbers[:1], name=quantity, attrs=attrs))
     measured, uncertainty, model, numerical = unit(numbers).tolist()
-    stated = [_condition(*condition) for condition in json.loads(conditions).items()]
+    stated = [_condition(runs, *condition) for condition in json.loads(conditions).items()]
     difference = _signed(row) if np.isfinite(model) else "–"
     kind = "" if verdict.sound else "warning"
     return [
@@ -121,8 +122,8 @@ def _value(model: float, numerical: float, symbol: str) -> str:
     return f"{labels.number(model)}{width} {symbol}".rstrip()
 
 
-def _condition(name: str, value: float | str) -> str:
+def _condition(runs: xr.Dataset, name: str, value: float | str) -> str:
     """Return one condition in words: "impact velocity = 0.99 m/s"."""
-    attrs = {"units": PARAMETERS[name].units} if name in PARAMETERS else {}
+    attrs = runs[name].attrs if name in runs.coords else attributes(name)
     single = xr.DataArray(np.array([value]), dims=name, name=name, attrs=attrs)
     return labels.setting(single, [0])

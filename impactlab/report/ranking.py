@@ -82,8 +82,8 @@ def without_effect(analysis: xr.Dataset, family: Family, responses: list[str]) -
         return []
     indices = [measures.index(analysis, "total_order", name) for name in responses]
     reach = np.max([index.values + index.margins + index.numerical for index in indices], axis=0)
-    names = measures.parameters(analysis)
-    idle = [labels.parameter(names[n]) for n in np.flatnonzero(reach < _MATTERS)]
+    meanings = measures.meanings(analysis)
+    idle = [meanings[n] for n in np.flatnonzero(reach < _MATTERS)]
     text = f"{labels.listing(idle)} (below {labels.percent(_MATTERS)} each)"
     return [("No effect on any response", text)] if idle else []
 
@@ -127,11 +127,11 @@ def _texts(
 ) -> list[str]:
     """Return parameters with their indices: "yield stress of the beam (36 ± 3 %)"."""
     names, index = measures.parameters(analysis), _index(analysis, family, response)
-    texts = []
+    meanings, texts = measures.meanings(analysis), []
     for place, number in enumerate(numbers):
         text = _written(runs, analysis, family, index, response, number)
         means = "" if place else _of_words(runs, names[number], response)
-        texts.append(f"{labels.parameter(names[number])} ({text}{means})")
+        texts.append(f"{meanings[number]} ({text}{means})")
     if texts and family.explained in analysis:
         fit = float(analysis[family.explained].sel(response=response))
         texts[-1] += f"; R² of the fit {labels.number(fit, 2)}"

@@ -17,6 +17,7 @@ from impactlab.methods import independent_runs
 from impactlab.methods.runs import Sample
 from impactlab.report.distribution import leading
 from impactlab.types import Floats
+from impactlab.variables import of_function
 
 
 def regime_entries(runs: xr.Dataset) -> list[tuple[str, str]]:
@@ -62,14 +63,15 @@ def _decisive(runs: xr.Dataset, name: str, apart: Floats) -> str:
         for key, numbers in filtered(apart, 0.5, columns).items()
     }
     coordinates = {"response": [name], "varied_parameter": list(columns)}
-    return leading(xr.Dataset(variables, coordinates, runs.attrs), name)
+    return leading(runs, xr.Dataset(variables, coordinates, runs.attrs), name)
 
 
 def jump_entries(runs: xr.Dataset) -> list[tuple[str, str]]:
     """Return one entry per response that jumps along a parameter of a grid: the largest jump."""
     entries = []
     for name in [] if is_sample(runs) else responses(runs):
-        if name != "energy_error" and (sizes := sorted(_jumps(runs, name), reverse=True)):
+        round_off = name == "energy_error" and not of_function(runs)
+        if not round_off and (sizes := sorted(_jumps(runs, name), reverse=True)):
             text = sizes[0][1]
             if len(sizes) > 1:
                 text += f", the largest of {labels.counted(len(sizes), 'jump')}"
@@ -92,7 +94,7 @@ def _jumps(runs: xr.Dataset, name: str) -> Iterator[tuple[float, str]]:
                 low, high = (labels.number(float(end), 3) for end in display(runs[name])(ends))
                 text = f"from {low} to {high}{unit} between "
                 text += labels.listing(labels.values(ends[dim], [0, 1])) + labels.unit(ends[dim])
-                text += f" of {labels.parameter(dim)}"
+                text += f" of {labels.parameter(runs[dim])}"
                 fixed = [labels.setting(runs[key], [i]) for key, i in where.items()]
                 text += f" ({', '.join(fixed)})" * bool(fixed)
                 yield float(np.ptp(ends.values)), text

@@ -79,7 +79,7 @@ def sections(runs: xr.Dataset, analysis: xr.Dataset) -> Iterator[Section]:
         lead = "There is none, nor an explorer: its terms assume independent parameters."
         yield Section("surrogate", "Surrogate", lead)
     elif categorical := [name for name in access.varied(runs) if labels.words(runs[name])]:
-        listed = labels.listing([labels.parameter(name) for name in categorical])
+        listed = labels.listing([labels.parameter(runs[name]) for name in categorical])
         lead = f"There is none, nor an explorer: no polynomial follows words ({listed})."
         yield Section("surrogate", "Surrogate", lead)
 
@@ -90,7 +90,7 @@ def shared(runs: xr.Dataset) -> str:
         return ""
     joined = dict.fromkeys(name for first, second, _ in pairs for name in (first, second))
     meaning = indices_of(runs.attrs)[0].family.if_correlated
-    listed = labels.listing([labels.parameter(name) for name in joined])
+    listed = labels.listing([labels.parameter(runs[name]) for name in joined])
     return f"The inputs are correlated ({listed}): {meaning}."
 
 
@@ -143,10 +143,10 @@ def history_entries(analysis: xr.Dataset) -> list[tuple[str, str]]:
     entries: list[tuple[str, str]] = []
     key = "generalised_total_order"
     for history in measures.histories(analysis):
-        indices, names = analysis.sel(history=history), measures.parameters(analysis)
+        indices, names = analysis.sel(history=history), measures.meanings(analysis)
         total, margin = (indices[name].values for name in (key, f"{key}_interval"))
         ranked = [i for i in np.argsort(-total, kind="stable") if total[i] > margin[i]][:_NAMED]
-        shares = [f"{labels.parameter(names[i])} {share(total[i], margin[i])}" for i in ranked]
+        shares = [f"{names[i]} {share(total[i], margin[i])}" for i in ranked]
         text = labels.listing(shares) or "no parameter exceeds its interval"
         if shares and not entries:
             text += " of the variance"
@@ -211,7 +211,7 @@ def surrogate(runs: xr.Dataset, analysis: xr.Dataset) -> Section:
 def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
     """Return one sentence per response and order whose two estimates do not overlap."""
     sentences = []
-    keys = np.array([labels.parameter(key) for key in measures.parameters(analysis)])
+    meanings = np.array(measures.meanings(analysis))
     for name in analysed(runs, analysis):
         for order in SOBOL.measures_in(analysis):
             sampled = measures.index(analysis, order.name, name)
@@ -222,7 +222,7 @@ def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
                 sentences.append(
                     f"{response}: the {order.label.replace(' ', '-')} indices of the runs and of "
                     "the surrogate differ by more than their intervals for "
-                    f"{labels.listing(keys[apart].tolist())}."
+                    f"{labels.listing(meanings[apart].tolist())}."
                 )
     return sentences
 
@@ -251,7 +251,7 @@ def _ranks(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> Table:
 
 
 def _parameters(analysis: xr.Dataset) -> list[str]:
-    return [labels.sentence(labels.parameter(name)) for name in measures.parameters(analysis)]
+    return list(map(labels.sentence, measures.meanings(analysis)))
 
 
 def _meanings(analysis: xr.Dataset, verdicts: str) -> list[tuple[str, str]]:
@@ -294,10 +294,10 @@ def index_tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list
 
 def second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
     """Return one row per pair of parameters, one column per response; noise is grey."""
-    names, shown = measures.parameters(analysis), analysed(runs, analysis)
+    names, shown = measures.meanings(analysis), analysed(runs, analysis)
     rows: list[Row] = []
     for first, second in combinations(range(len(names)), 2):
-        pair = f"{labels.parameter(names[first])} and {labels.parameter(names[second])}"
+        pair = f"{names[first]} and {names[second]}"
         indices = analysis.isel(parameter=first, other_parameter=second)
         cells = (_index(indices.sel(response=name), "second_order") for name in shown)
         rows.append([Cell(labels.sentence(pair)), *cells])

@@ -10,7 +10,6 @@ import numpy as np
 import scipy  # its stats are loaded when first used
 import xarray as xr
 
-from impactlab import wings
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, design_dims, is_sample, names, responses, usable, varied
 from impactlab.figures.labels import display
@@ -18,7 +17,6 @@ from impactlab.figures.measures import analysed
 from impactlab.figures.samples import scatter
 from impactlab.methods import NO_DISTRIBUTION
 from impactlab.methods.runs import correlations
-from impactlab.model.parameters import PARAMETERS
 from impactlab.report import distribution, measured, sensitivity
 from impactlab.report.answer import entries
 from impactlab.report.cautions import beside, cautions, endings, notes
@@ -26,10 +24,11 @@ from impactlab.report.convergence import convergence
 from impactlab.report.explorer import write_explorer
 from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
 from impactlab.report.regimes import regime_entries
-from impactlab.variables import attributes
 
 _GRID_VALUES = 12  # a longer list of values of a grid is replaced by its range
 _FAILED_RUNS = 20  # largest number of failed runs listed one by one
+_OTHER = ("distribution", "units", "long_name", "function")
+"""Attributes of a varied parameter that are no arguments of its distribution."""
 _EACH = "Each response against each parameter"
 _SCATTER = (
     "A line that bends or tilts shows a parameter that matters by itself; points that fan out "
@@ -93,10 +92,10 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     """Return the sections on results, inputs and runs, in the order of the page."""
     inputs, ranges = _inputs(runs), _ranges(runs, analysis)
     if not is_sample(runs):
-        further = wings.among(runs.coords.get("beam_model", ""))
+        further = access.further_models(runs)
         return [
             *convergence(runs, analysis),
-            *measured.sections(analysis),
+            *measured.sections(runs, analysis),
             *(section for model in further for section in model.part("sections")(runs, analysis)),
             Section("results", "Results", tables=[ranges]),
             _outcome(runs, analysis),
@@ -111,7 +110,7 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
         *distribution.limit_sections(runs, analysis),
         *sensitivity.sections(runs, analysis),
         *sensitivity.numerical_sections(runs, analysis),
-        *measured.sections(analysis),
+        *measured.sections(runs, analysis),
         Section(
             "results",
             "Distribution of each response",
@@ -128,20 +127,18 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
 def _inputs(runs: xr.Dataset) -> Section:
     """Return the section on the parameters: varied ones with values or distribution, fixed ones."""
     groups = dict(zip(names(runs, "varied"), names(runs, "groups"), strict=False))
-    metadata = {name: attributes(name) for name in (*PARAMETERS, "duration")}
     changed: list[Row] = []
     for name in varied(runs):
-        values = _values(runs[name].assign_attrs(metadata.get(name, {}) | runs[name].attrs))
+        values = _values(runs[name])
         group = [groups[name].replace("_", " ")] if groups else []
-        label = labels.sentence(labels.parameter(name))
+        label = labels.sentence(labels.parameter(runs[name]))
         changed.append([label, *values, *group, Cell(name, "muted")])
     fixed: list[Row] = []
-    for name in dict.fromkeys((*metadata, *map(str, runs.coords))):
-        if name in runs.coords and runs[name].ndim == 0 and name not in varied(runs):
-            coordinate = runs[name].assign_attrs(metadata.get(name, {}) | runs[name].attrs)
-            label = labels.sentence(coordinate.attrs["long_name"])
+    for name, coordinate in runs.coords.items():
+        if coordinate.ndim == 0 and name not in varied(runs):
+            label = labels.sentence(labels.parameter(coordinate))
             text = labels.values(coordinate, [0])[0] + labels.unit(coordinate)
-            fixed.append([label, text, Cell(name, "muted")])
+            fixed.append([label, text, Cell(str(name), "muted")])
     head = ["Parameter", "Values", "Number", *(["Group"] if groups else []), "Key"]
     tables = [Table("Varied parameters", head, changed)] if changed else []
     tables += [_correlations(runs, pairs)] if (pairs := correlations(runs)) else []
@@ -155,7 +152,9 @@ def _correlations(runs: xr.Dataset, pairs: list[tuple[str, str, float]]) -> Tabl
     rows: list[Row] = []
     for first, second, stated in pairs:
         observed = float(scipy.stats.spearmanr(runs[first].values, runs[second].values).statistic)
-        pair = labels.sentence(f"{labels.parameter(first)} and {labels.parameter(second)}")
+        pair = labels.sentence(
+            f"{labels.parameter(runs[first])} and {labels.parameter(runs[second])}"
+        )
         rows.append([pair, *(Cell(f"{rank:.2f}", "number") for rank in (stated, observed))])
     caption = "Rank correlations, by a Gaussian copula; all other pairs vary independently"
     return Table(caption, ["Parameters", "As stated", "In the sample"], rows)
@@ -170,7 +169,7 @@ def _values(coordinate: xr.DataArray) -> Row:
             texts.append(f"{word} {labels.percent(weight, 3)}")
     elif "distribution" in attrs:
         scale = display(coordinate).scale
-        for key in (key for key in attrs if key not in ("distribution", "units", "long_name")):
+        for key in (key for key in attrs if key not in _OTHER):
             ratio = "geometric" in key  # without the parameter's unit
             text = labels.number(float(attrs[key]) * (1.0 if ratio else scale))
             texts.append(f"{key.replace('_', ' ')} {text}{'' if ratio else unit}")
@@ -196,8 +195,8 @@ def _by_word(runs: xr.Dataset, name: str) -> Table:
             cells.append(Cell(text, "number"))
         rows.append([labels.axis(labels.response(response), unit.symbol), *cells])
     caption = (
-        f"Mean of each response by {labels.parameter(name)}, over the runs that have it, with the "
-        "half-width of its interval"
+        f"Mean of each response by {labels.parameter(runs[name])}, over the runs that have it, "
+        "with the half-width of its interval"
     )
     return Table(caption, ["Response", *labels.words(runs[name])], rows)
 

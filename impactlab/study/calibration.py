@@ -23,7 +23,7 @@ from impactlab.solver.contact import LAWS
 from impactlab.study import CALIBRATION, steps
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.schema.declarations import AnyStudy
+from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
 from impactlab.study.schema.measurement_files import Given, read_measurements
 from impactlab.study.schema.readers import of_impacts, study_of_content
 from impactlab.study.schema.yaml_file import read_mapping
@@ -59,7 +59,8 @@ def calibrate(
     if not isinstance(study.sampling, RandomSample):
         reason = "calibration needs a sample (any method but grid), whose ranges are the prior"
         raise StudyError(Problem(str(study.path), "sampling.method", reason))
-    if categories := [name for name in study.sampling.words if name != "contact"]:
+    weights = _drawn(study)
+    if categories := [name for name in study.sampling.words if name != "contact" or not weights]:
         reason = (
             "draws words, and no surrogate is fitted over words: fix it (contact laws alone are "
             "weighed against each other)"
@@ -85,11 +86,14 @@ def calibrate(
     if resolution := steps.evidence(study, folder / "runs.nc").get("resolution"):
         grid = read_netcdf(resolution, "resolution")["grid_relative"]
         numerical = dict(zip(grid["response"].values.tolist(), grid.values.tolist(), strict=True))
-    weights = _drawn(study)
     before = weights if weights.keys() == surrogates.keys() else None
     posterior = calibrated(surrogates, measurements, numerical, model_error, before)
     posterior = _confirmed(posterior, runs, measurements, folder / CALIBRATION, engine)
-    about = {key: first.attrs[key] for key in ("study", "title", "study_text", "study_sha256")}
+    keys = ("study", "title", "study_text", "study_sha256", "function")
+    about = {key: first.attrs[key] for key in keys if key in first.attrs}
+    names = posterior["parameter"].values.tolist()
+    meanings = [str(first[name].attrs["long_name"]) for name in names]
+    posterior = posterior.assign(parameter_long_name=("parameter", meanings))
     posterior = posterior.assign_attrs(about | {"model_error": model_error})
     write_netcdf(posterior, folder / "calibration.nc", "calibration")
     return posterior
@@ -123,10 +127,10 @@ def _models(
 
 def _drawn(study: AnyStudy) -> dict[str, float]:
     """Return the contact laws that a sample draws, with their probabilities; else {}."""
-    parameter = study.sampling.parameters.get("contact")
-    arguments = (
-        parameter.arguments() if isinstance(parameter, Choice) else {"values": (), "weights": ()}
-    )
+    law = study.sampling.parameters.get("contact")
+    if not isinstance(study, ImpactStudy) or not isinstance(law, Choice):
+        return {}
+    arguments = law.arguments()
     return dict(zip(arguments["values"], arguments["weights"], strict=True))
 
 

@@ -71,7 +71,7 @@ def design(study: AnyStudy) -> xr.Dataset:
     if isinstance(study, ImpactStudy):
         return described(runs)
     for name, attrs in study.labels.items():
-        runs[name].attrs = {**attrs, **runs[name].attrs}
+        runs[name].attrs = {**attrs, **runs[name].attrs, "function": study.function}
     return runs
 
 

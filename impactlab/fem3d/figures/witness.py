@@ -153,7 +153,7 @@ def witness(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             scales.logarithmic(ax, "x", runs["velocity"].values)
             scales.at(ax, "x", runs["velocity"].values)
         below.set_xlim(0.85 * runs["velocity"].values.min(), 1.18 * runs["velocity"].values.max())
-        below.set_xlabel(labels.axis(labels.parameter("velocity"), "m/s"))
+        below.set_xlabel(labels.axis(labels.parameter(runs["velocity"]), "m/s"))
     axes[len(names)].set_ylabel(labels.wrapped_axis("difference from the 3-D FE model", "%", 24))
     style.legend(figure, "Model of the beam", [labels.beam_model(name) for name in models(runs)])
     return figure

@@ -35,7 +35,7 @@ from impactlab.validation.fields import (
     value_type,
 )
 from impactlab.validation.stated import plain
-from impactlab.variables import RESPONSES
+from impactlab.variables import RESPONSES, of_function
 
 Conditions = Mapping[str, Any]
 Given = str | Path | Mapping[str, Any]
@@ -117,11 +117,14 @@ def read_measurements(
 ) -> tuple[Measurement, ...]:
     """Read measurements: a file, or a mapping of the keys that a file has (docs/measurements.md).
 
-    runs: whose responses and parameters may be measured beside those of impacts. Raises StudyError
+    runs: whose responses and parameters may be measured beside those of impacts; those of a
+    function alone. Raises StudyError
     with every problem: file, key, value, what to do; ValueError for runs of no study.
     """
     responses = {name: response.units for name, response in RESPONSES.items()}
     parameters = dict(PARAMETERS)
+    if runs is not None and of_function(runs):
+        responses, parameters = {}, {}
     if runs is not None:
         if "responses" not in runs.attrs:
             raise ValueError(

@@ -14,7 +14,7 @@ from impactlab.methods import read_sampling
 from impactlab.methods.grid import Grid
 from impactlab.methods.sampling import RandomSample
 from impactlab.methods.sobol import Sobol
-from impactlab.model.parameters import PARAMETERS, Parameter
+from impactlab.model.parameters import Parameter
 from impactlab.model.quantities import si_units
 from impactlab.study.schema.consistency import CHECKS, further_models, limit_reasons, values_of
 from impactlab.study.schema.declarations import (
@@ -29,7 +29,7 @@ from impactlab.study.schema.declarations import (
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source, text_of
 from impactlab.validation.errors import Problem, StudyError, unknown
 from impactlab.validation.fields import Heading, Names, names, validated
-from impactlab.variables import COORDINATES, FLAGS, RESPONSES, VARIABLES, attributes
+from impactlab.variables import FLAGS, RESPONSES
 from impactlab.verification.functions import FUNCTIONS
 
 
@@ -186,11 +186,8 @@ def _function_study(source: Source) -> FunctionStudy:
     if isinstance(name, str) and "@" in name:
         kind, (parameters, responses) = _PythonFunctionFile, _python_function(source, name)
     elif isinstance(name, str) and name in FUNCTIONS:
-        function, kind, responses = FUNCTIONS[name], _FunctionFile, {"value": "1"}
-        parameters = {
-            key: Parameter(key, "1", f"{key} of the {function.title}", ())
-            for key in function.ranges
-        }
+        kind, responses = _FunctionFile, {"value": "1"}
+        parameters = {key: Parameter(key, "1", key, ()) for key in FUNCTIONS[name].ranges}
     else:
         raise StudyError(Problem(path, "function", unknown("function", name, FUNCTIONS), name))
     file = validated(kind, source.data, path, parameters, responses)
@@ -237,21 +234,15 @@ def _python_function(source: Source, key: str) -> tuple[dict[str, Parameter], di
     return parameters, {name: KNOWN[key].unit(name) for name in responses}
 
 
-_TAKEN = {"run", "response", "parameter"}
-"""Names of dimensions of every study's datasets."""
+_TAKEN = ("run", "response", "parameter", *FLAGS)
+"""Names of dimensions and variables of every study's datasets."""
 
 
 def _name_problem(name: str) -> str:
     """Return why a Python function's parameter or response cannot have a name; "" if it can."""
     if not name.isidentifier():
         return "cannot name an argument of a function, which has letters, digits and _"
-    if name in _TAKEN or name in FLAGS:
-        return "is the name of another variable of the results"
-    of_impacts = (VARIABLES.keys() - COORDINATES.keys()) | PARAMETERS.keys()
-    if name in of_impacts:
-        meaning = attributes(name)["long_name"]
-        return f"is the name of a quantity of impacts ({meaning}), which figures would take it for"
-    return ""
+    return "is the name of another variable of the results" if name in _TAKEN else ""
 
 
 def _units(entry: Any) -> str:

@@ -41,7 +41,9 @@ def on_design(
 ) -> xr.Dataset:
     """Return answers of one number per run in the design's order; attrs: of each response."""
     dims, shape = run_shape(design)
-    attrs = {**attrs, "status": attributes("status")}
+    function = {"function": design.attrs["function"]}
+    attrs = {name: {**entry, **function} for name, entry in attrs.items()}
+    attrs["status"] = attributes("status")
     values = {name: (dims, each.reshape(shape), attrs.get(name)) for name, each in answers.items()}
     return design.assign(values).assign_attrs(provenance())
 

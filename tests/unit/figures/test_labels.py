@@ -6,6 +6,7 @@ import xarray as xr
 
 from impactlab.figures import labels, scales, style
 from impactlab.figures.labels import display
+from impactlab.variables import attributes
 
 
 @pytest.mark.parametrize(
@@ -37,7 +38,8 @@ def test_listing():
 
 
 def test_setting_shows_values_in_one_unit():
-    stress = xr.DataArray([250e6, 345e6], dims="s", attrs={"units": "Pa"}, name="beam_yield_stress")
+    attrs = attributes("beam_yield_stress")
+    stress = xr.DataArray([250e6, 345e6], dims="s", attrs=attrs, name="beam_yield_stress")
     assert labels.setting(stress, [0, 1]) == "yield stress of the beam = 250 and 345 MPa"
 
 
@@ -47,6 +49,7 @@ def test_laws_and_rules_are_named_as_in_papers():
     assert labels.values(laws, [0]) == ["Jackson and Green"]
     assert labels.values(rules, [0]) == ["Gauss-Lobatto"]
     commas = xr.DataArray(["hertz", "stronge"], dims="contact", name="contact")
+    commas.attrs = attributes("contact")
     words = "contact law = “Hertz” and “Stronge, unloading after Wang et al.”"
     assert labels.setting(commas, [0, 1]) == words
 
