@@ -48,6 +48,7 @@ MEANINGS = {name: entry.long_name for name, entry in PARAMETERS.items()} | {
     "nodes_value": "response by nodes, in `response_units`",
     "other_parameter": "the other parameter",
     "parameter": "calibrated parameter",
+    "parameter_long_name": "meaning of the parameter",
     "parameter_units": "SI unit of the parameter",
     "points_uncertainty": "numerical uncertainty of the points, in `response_units`",
     "points_value": "response by points, in `response_units`",

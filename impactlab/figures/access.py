@@ -68,7 +68,7 @@ def physical(runs: xr.Dataset) -> list[str]:
     ]
 
 
-def further_models(runs: xr.Dataset) -> list[wings.Model]:
+def further_models(runs: xr.Dataset) -> list[wings.BeamModel]:
     """Return the models of wings that some of the runs have."""
     return [] if of_function(runs) else wings.among(runs.coords.get("beam_model", ""))
 

@@ -134,11 +134,11 @@ def _inputs(runs: xr.Dataset) -> Section:
         label = labels.sentence(labels.parameter(runs[name]))
         changed.append([label, *values, *group, Cell(name, "muted")])
     fixed: list[Row] = []
-    for name, coordinate in runs.coords.items():
-        if coordinate.ndim == 0 and name not in varied(runs):
+    for key, coordinate in runs.coords.items():
+        if coordinate.ndim == 0 and key not in varied(runs):
             label = labels.sentence(labels.parameter(coordinate))
             text = labels.values(coordinate, [0])[0] + labels.unit(coordinate)
-            fixed.append([label, text, Cell(str(name), "muted")])
+            fixed.append([label, text, Cell(str(key), "muted")])
     head = ["Parameter", "Values", "Number", *(["Group"] if groups else []), "Key"]
     tables = [Table("Varied parameters", head, changed)] if changed else []
     tables += [_correlations(runs, pairs)] if (pairs := correlations(runs)) else []

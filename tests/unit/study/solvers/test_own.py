@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.figures import access, labels
+from impactlab.analysis.measurements import Agreement
+from impactlab.figures import access, catalogue, labels
+from impactlab.report import measured
+from impactlab.report.study import write_report
 from impactlab.study import steps
 from impactlab.study.solvers.fingerprint import fingerprint
 from impactlab.study.solvers.own import TASKS
@@ -204,6 +207,84 @@ def test_growing_samples_take_functions_too():
     )
     runs = il.Study(title="Growing", function=product, sampling=growing).run(workers=1)
     assert 256 < runs.sizes["run"] <= 2048
+
+
+def of_numbers(velocity, load, contact, nodes=2.0):
+    return {"peak_force": velocity * load * contact, "peak_plastic_strain": load + nodes}
+
+
+def of_words(velocity, load, contact, nodes=2.0):
+    return of_numbers(velocity, len(load), 1.0 + (contact == "hertz"), nodes)
+
+
+NUMBERS = {
+    "velocity": il.Uniform("1 mm", "2 mm"),
+    "load": il.Uniform(1, 2),
+    "contact": il.Uniform(1, 2),
+    "nodes": 4.5,
+}
+WORDS = {"load": il.Choice(["point", "on_top"]), "contact": il.Choice(["hertz", "my_law"])}
+GRIDS = {"velocity": ["1 mm", "1.5 mm", "2 mm"], "load": [1, 2], "contact": [1, 2, 3]}
+TAKEN = (
+    "impact velocity",
+    "contact law",
+    "contact force",
+    "Hertz",
+    "mid-span",
+    "span of",
+    "sphere",
+)
+
+
+@pytest.mark.parametrize(
+    ("function", "sampling"),
+    [
+        (of_numbers, il.Sobol(base_samples=64, parameters=NUMBERS)),
+        (of_words, il.Sobol(base_samples=64, parameters=NUMBERS | WORDS)),
+        (of_numbers, il.Grid(parameters=GRIDS | {"nodes": [3, 5, 9]})),
+    ],
+    ids=["numbers", "words", "grid"],
+)
+def test_names_of_impacts_mean_nothing_in_a_model_of_ones_own(folder, function, sampling):
+    responses = ["peak_force", "peak_plastic_strain"]
+    study = il.Study(title="Names", function=function, responses=responses, sampling=sampling)
+    runs = study.run(workers=1)
+    analysis = study.analyse()
+    assert runs.velocity.attrs["long_name"] == "velocity"
+    assert runs.velocity.attrs["units"] == "m"
+    assert labels.display(runs.peak_plastic_strain).symbol == ""
+    figures = catalogue.applicable(runs, analysis)
+    captions = [figure.caption(runs, analysis) for figure in figures.values()]
+    assert "contact_laws" not in figures
+    assert not any(axis in str(name) for name in analysis for axis in ("nodes", "points"))
+    (folder / "captions.json").write_text("{}")
+    write_report(runs, analysis, folder, folder / "page.html")
+    page = (folder / "page.html").read_text()
+    if function is of_numbers and "run" in runs.dims:
+        page += (folder / "page_explorer.html").read_text()
+    shown = " ".join([*captions, *il.answers(runs, analysis), page])
+    assert not [words for words in TAKEN if words in shown]
+    name = "scatter_peak_force" if "run" in runs.dims else "parameter_effects"
+    axes = il.plot.figure(name, runs, analysis)
+    assert "Velocity (mm)" in {axes[0].get_xlabel(), axes[0].figure.get_supxlabel()}
+    if function is of_words:
+        ticks = axes[2].get_xticklabels()
+        assert [tick.get_text() for tick in ticks] == ["hertz", "my law"]
+        assert "with hertz" in il.answers(runs, analysis)[0]
+
+
+def test_a_model_of_ones_own_is_compared_with_measurements_of_its_own():
+    sampling = il.Grid(parameters={"velocity": ["1 mm", "2 mm"]})
+    runs = il.Study(title="Own", function=lambda velocity: 3e3 * velocity, sampling=sampling).run()
+    entry = {"quantity": "value", "value": 3.1, "standard_uncertainty": 0.1}
+    given = {"title": "Test", "source": "made up", "measurements": [entry]}
+    entry["conditions"] = {"velocity": "1 mm"}
+    compared = il.compare(runs, given)
+    assert compared["compared_verdict"].item() == Agreement.COMPATIBLE
+    assert measured._condition(runs, "velocity", 0.001) == "velocity = 1 mm"
+    entry["conditions"] = {"velocity": "1 m/s"}
+    with pytest.raises(il.StudyError, match="expected a length"):
+        il.compare(runs, given)
 
 
 def test_stored_answers_are_those_of_the_very_function(monkeypatch):
