@@ -139,7 +139,9 @@ def indices(runs: xr.Dataset, parameters: list[str] | None = None) -> xr.Dataset
         "sensitivity_verdict": _verdicts(asked),
     }
     data |= _over_time(lead[0])
-    coords = {"response": asked, "parameter": names, "other_parameter": names}
+    coords: dict[str, Any] = {"response": asked, "parameter": names, "other_parameter": names}
+    long_names = [runs[name].attrs["long_name"] if name in runs else name for name in names]
+    coords["parameter_long_name"] = ("parameter", long_names)
     coords |= {
         "history": ["contact_force", "midspan_deflection"],
         "history_units": ("history", ["N", "m"]),

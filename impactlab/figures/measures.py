@@ -109,7 +109,8 @@ def parameters(analysis: xr.Dataset) -> list[str]:
 
 def meanings(analysis: xr.Dataset) -> list[str]:
     """Return the meanings of the varied parameters, or the names of their groups in words."""
-    return [str(text) for text in analysis.get("parameter_long_name", analysis["parameter"]).values]
+    texts = analysis.get("parameter_long_name", analysis["parameter"]).values
+    return [str(text).replace("_", " ") for text in texts]
 
 
 def index(analysis: xr.Dataset, measure: str, response: str) -> Index:

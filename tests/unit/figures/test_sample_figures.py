@@ -13,6 +13,7 @@ from impactlab.figures import data, draw
 from impactlab.figures.catalogue import CATALOGUE
 from impactlab.figures.data import alt
 from impactlab.figures.samples import conditional_mean, scatter
+from impactlab.variables import attributes
 
 
 @pytest.fixture
@@ -144,6 +145,7 @@ def of_words(study):
     failed = np.isnan(runs["peak_force"].values)
     one = np.where(failed, np.cumsum(failed) % 4 != 0, np.arange(failed.size) % 4 == 0)
     choice = {"distribution": "choice", "values": ["mjg", "kogut_etsion"], "weights": [0.5, 0.5]}
+    choice |= attributes("contact")
     law = ("run", np.where(one, "mjg", "kogut_etsion"), choice)
     runs = runs.drop_vars("contact").assign_coords(contact=law)
     return runs.assign_attrs(varied=[*runs.attrs["varied"], "contact"])

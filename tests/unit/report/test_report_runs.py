@@ -3,7 +3,7 @@
 import numpy as np
 
 from impactlab.analysis import distribution
-from impactlab.variables import RESPONSES, STATUS_FLAGS
+from impactlab.variables import RESPONSES, STATUS_FLAGS, attributes
 
 STRONGE = "Stronge, unloading after Wang et al."
 
@@ -47,11 +47,10 @@ def test_a_long_grid_is_given_by_its_range(report, material_study):
 
 def test_distributions_and_percentiles_of_a_sample(report, sobol_study):
     runs, analysis = sobol_study
-    runs["sphere_radius"].attrs = {
+    runs["sphere_radius"].attrs = attributes("sphere_radius") | {
         "distribution": "lognormal",
         "median": 0.035,
         "geometric_standard_deviation": 1.1,
-        "units": "m",
     }
     found = distribution.analysis(runs.assign_attrs(method="delta"))
     page = report(runs, analysis.merge(found, compat="override"))

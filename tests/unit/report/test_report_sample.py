@@ -16,6 +16,7 @@ from impactlab.report.answer import answers
 from impactlab.report.sensitivity import with_margin
 from impactlab.report.study import write_report
 from impactlab.verdicts import flagged
+from impactlab.variables import attributes
 
 PEAK = {"response": "peak_force"}
 
@@ -84,6 +85,7 @@ def test_words_have_means_and_no_surrogate(report, study):
     runs, analysis = study
     words = ["mjg", "brake", "thornton"]  # the last is never drawn
     choice = {"distribution": "choice", "values": words, "weights": [0.75, 0.25, 1e-9]}
+    choice |= attributes("contact")
     law = ("run", np.where(np.arange(64) % 4, "mjg", "brake"), choice)
     runs = runs.drop_vars("contact").assign_coords(contact=law)
     runs.attrs["varied"] = [*runs.attrs["varied"], "contact"]
