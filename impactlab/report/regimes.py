@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import product
-
 import numpy as np
 import xarray as xr
 
 from impactlab.analysis.distribution import drawn_outputs, filtered
-from impactlab.analysis.regimes import jumps, of_runs
+from impactlab.analysis.regimes import of_runs
 from impactlab.figures import labels
-from impactlab.figures.access import design_dims, is_sample, physical, responses, usable
+from impactlab.figures.access import responses
 from impactlab.figures.labels import display
 from impactlab.methods import independent_runs
 from impactlab.methods.runs import Sample
 from impactlab.report.distribution import leading
 from impactlab.types import Floats
-from impactlab.variables import of_function
 
 
 def regime_entries(runs: xr.Dataset) -> list[tuple[str, str]]:
@@ -64,40 +60,6 @@ def _decisive(runs: xr.Dataset, name: str, apart: Floats) -> str:
     }
     coordinates = {"response": [name], "varied_parameter": list(columns)}
     return leading(runs, xr.Dataset(variables, coordinates, runs.attrs), name)
-
-
-def jump_entries(runs: xr.Dataset) -> list[tuple[str, str]]:
-    """Return one entry per response that jumps along a parameter of a grid: the largest jump."""
-    entries = []
-    for name in [] if is_sample(runs) else responses(runs):
-        round_off = name == "energy_error" and not of_function(runs)
-        if not round_off and (sizes := sorted(_jumps(runs, name), reverse=True)):
-            text = sizes[0][1]
-            if len(sizes) > 1:
-                text += f", the largest of {labels.counted(len(sizes), 'jump')}"
-            entries.append((f"{labels.sentence(labels.response(name))} jumps", text))
-    return entries
-
-
-def _jumps(runs: xr.Dataset, name: str) -> Iterator[tuple[float, str]]:
-    """Yield the size and the description of each jump of a response along a physical parameter."""
-    array, unit = usable(runs, name), labels.unit(runs[name])
-    dims = design_dims(runs, array.dims)
-    for dim in (dim for dim in physical(runs) if dim in dims):
-        ordered = array.sortby(dim)
-        across = [other for other in dims if other != dim]
-        for place in product(*(range(ordered.sizes[other]) for other in across)):
-            where = dict(zip(across, place, strict=True))
-            curve = ordered.isel(where)
-            for position in jumps(curve[dim].values.astype(float), curve.values).tolist():
-                ends = curve[[position, position + 1]]
-                low, high = (labels.number(float(end), 3) for end in display(runs[name])(ends))
-                text = f"from {low} to {high}{unit} between "
-                text += labels.listing(labels.values(ends[dim], [0, 1])) + labels.unit(ends[dim])
-                text += f" of {labels.parameter(runs[dim])}"
-                fixed = [labels.setting(runs[key], [i]) for key, i in where.items()]
-                text += f" ({', '.join(fixed)})" * bool(fixed)
-                yield float(np.ptp(ends.values)), text
 
 
 def regime_doubt(runs: xr.Dataset, name: str) -> str:

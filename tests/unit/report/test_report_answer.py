@@ -11,6 +11,7 @@ from impactlab.analysis.convergence.axes import NODES
 from impactlab.figures.convergence import _NODES as NODES_FIGURE
 from impactlab.report.answer import LINES, answers, entries
 from impactlab.report.convergence import convergence
+from impactlab.variables import described
 from impactlab.verification.functions import FUNCTIONS
 
 
@@ -67,10 +68,8 @@ def _grid(values, **levels):
     array = np.broadcast_to(np.asarray(values, float), [len(level) for level in levels.values()])
     attrs = {"varied": list(levels), "responses": ["peak_force"], "title": "A study"}
     runs = xr.Dataset({"peak_force": ([*levels], array, {"units": "N"})}, levels, attrs)
-    for name, level in levels.items():
-        if np.asarray(level).dtype.kind == "f":
-            runs[name].attrs["units"] = {"velocity": "m s-1", "beam_depth": "m"}.get(name, "Pa")
-    return runs.assign(status=xr.zeros_like(runs["peak_force"], dtype=np.int32).rename("status"))
+    status = xr.zeros_like(runs["peak_force"], dtype=np.int32).rename("status")
+    return described(runs.assign(status=status))
 
 
 OVER = "From 0.5 to 16 m/s of impact velocity the peak force "

@@ -15,8 +15,8 @@ from impactlab.report import sensitivity
 from impactlab.report.answer import answers
 from impactlab.report.sensitivity import with_margin
 from impactlab.report.study import write_report
-from impactlab.verdicts import flagged
 from impactlab.variables import attributes
+from impactlab.verdicts import flagged
 
 PEAK = {"response": "peak_force"}
 

@@ -195,7 +195,8 @@ def test_other_names_are_as_good_as_any(name):
         "units": "1",
         "function": study.declared.function,
     }
-    assert il.answers(runs, study.analyse())[0].endswith("out 1 to 4.")
+    answer = il.answers(runs, study.analyse())[0]
+    assert answer.startswith(f"From 1 to 2 of {name} the out rises from 1 to 2 at 1 of a")
 
 
 def test_growing_samples_take_functions_too():
@@ -240,7 +241,7 @@ TAKEN = (
     ("function", "sampling"),
     [
         (of_numbers, il.Sobol(base_samples=64, parameters=NUMBERS)),
-        (of_words, il.Sobol(base_samples=64, parameters=NUMBERS | WORDS)),
+        (of_words, il.Sobol(base_samples=256, parameters=NUMBERS | WORDS)),
         (of_numbers, il.Grid(parameters=GRIDS | {"nodes": [3, 5, 9]})),
     ],
     ids=["numbers", "words", "grid"],
@@ -270,7 +271,7 @@ def test_names_of_impacts_mean_nothing_in_a_model_of_ones_own(folder, function, 
     if function is of_words:
         ticks = axes[2].get_xticklabels()
         assert [tick.get_text() for tick in ticks] == ["hertz", "my law"]
-        assert "with hertz" in il.answers(runs, analysis)[0]
+        assert "with hertz" in " ".join(il.answers(runs, analysis))
 
 
 def test_a_model_of_ones_own_is_compared_with_measurements_of_its_own():
