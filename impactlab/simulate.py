@@ -53,7 +53,7 @@ _COMPILE = """
 import impactlab as il
 from impactlab.simulate import case_table, solve
 grid = il.Discretisation(nodes=5, scheme={scheme!r})
-varied = {{"beam_model": [{model!r}], "load": [{load!r}]}}
+varied = {{"beam_model": [{model!r}], "contact": [{law!r}]}}
 solve(case_table(il.paper_impact(), grid, duration=1e-6, varied=varied))
 """
 
@@ -370,8 +370,8 @@ def compile_kernels(
     for model, scheme, more in itertools.product(beam_models, schemes, extended):
         if model in BENDING_MODELS or (model in BEAM_MODELS and scheme == "leapfrog"):
             kernel = kernel_of(BEAM_MODELS.index(model), SCHEMES.index(scheme), more)
-            load = LOADS[more and model not in LUMPED_MODELS]
-            programs[kernel] = _COMPILE.format(model=model, scheme=scheme, load=load)
+            law = "hunt_crossley" if more else "hertz"
+            programs[kernel] = _COMPILE.format(model=model, scheme=scheme, law=law)
     if len(programs) == 1:
         precompile(*programs.popitem())
     else:

@@ -35,9 +35,9 @@ from impactlab.solver.types import Record
 
 @compiled
 def contact_radius(contact: Record, pair: Pair, F: float) -> float:
-    """Return the radius (m) of the circle of contact under the force F (N)."""
+    """Return the radius (m) of the circle of contact under the force F (N), damping apart."""
     a = radius(pair.law, contact.delta_m, pair.E, pair.R, pair.S_y, pair.nu)
-    return float(a * min(F / contact.F_m, 1.0) ** (1.0 / 3.0))
+    return float(a * min((F - contact.damping) / contact.F_m, 1.0) ** (1.0 / 3.0))
 
 
 @compiled

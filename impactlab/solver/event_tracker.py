@@ -8,17 +8,20 @@ from typing import Any
 import numpy as np
 
 from impactlab.solver.contact.history import Pair
+from impactlab.solver.contact.switch import is_damped
+from impactlab.solver.contact_damping import damped_force
 from impactlab.solver.jit import compiled, inlined
 from impactlab.solver.types import Record, record
 
 EVENTS = record(
     """
-    delta delta_before t_peak w w_before w_max F contacts touching t_touch t_first_end
+    delta delta_before t_peak w w_before w_max F F_before contacts touching t_touch t_first_end
     time_in_contact v_exit v_s v_mid impulse energy_error
     """
 )
 """At the last two steps: indentation delta, delta_before (m), mid-span deflection w, w_before
-(m), force F (N). t_peak (s): time of the largest indentation; w_max (m). contacts: number begun;
+(m), force F (N); F_before (N) of damped laws. t_peak (s): time of the largest force, which is that
+of the largest indentation but for damped laws; w_max (m). contacts: number begun;
 touching: 1 or 0; t_touch: when this contact began, t_first_end: when the first one ended (NaN:
 not yet), time_in_contact of the ended ones (s); v_exit (m/s): the sphere's velocity when the last
 contact ended; v_s, v_mid (m/s): of sphere and mid-span at the last audit. impulse (N s).
@@ -45,8 +48,13 @@ def vertex(before: float, middle: float, after: float) -> tuple[float, float]:
     return offset, middle - 0.25 * (before - after) * offset
 
 
-def between_steps(load_to: Callable[..., Any], force: Callable[..., float]) -> Any:
-    """Return the contact force of a law's two functions, a peak just passed between the steps."""
+def between_steps(
+    load_to: Callable[..., Any], force: Callable[..., float], damped: bool = False
+) -> Any:
+    """Return the contact force of a law's two functions, a peak just passed between the steps.
+
+    damped: also for laws with damping.
+    """
 
     @inlined
     def contact_force(
@@ -57,10 +65,25 @@ def between_steps(load_to: Callable[..., Any], force: Callable[..., float]) -> A
         if falls and events.delta == contact.approach_m:
             offset, peak = vertex(events.delta_before, events.delta, delta)
             load_to(contact, pair, peak)
-            events.t_peak = t + (offset - 1.0) * dt
-        return force(contact, pair, delta)
+            if not (damped and is_damped(pair.law)):
+                events.t_peak = t + (offset - 1.0) * dt
+        F = force(contact, pair, delta)
+        if damped and is_damped(pair.law):
+            F = damped_force(contact, pair, F, delta, events.delta, events.delta_before, dt)
+            _note_peak(contact, events, F, t, dt)
+        return F
 
     return contact_force
+
+
+@compiled
+def _note_peak(contact: Record, events: Record, F: float, t: float, dt: float) -> None:
+    """Note a largest force just passed between the steps; F (N): at time t."""
+    if events.F_before <= events.F and events.F > F:
+        offset, peak = vertex(events.F_before, events.F, F)
+        if peak > contact.peak_force:
+            contact.peak_force, events.t_peak = peak, t + (offset - 1.0) * dt
+    events.F_before = events.F
 
 
 @inlined

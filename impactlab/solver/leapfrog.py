@@ -27,6 +27,7 @@ from impactlab.solver.beam import BeamState, make_beam, make_grid, rest_beam
 from impactlab.solver.contact import history as contact_history
 from impactlab.solver.contact import prestress
 from impactlab.solver.contact.history import make_pair
+from impactlab.solver.contact.switch import DAMPED
 from impactlab.solver.contact_patch import contact_radius
 from impactlab.solver.fibre_plasticity import (
     PlasticState,
@@ -73,7 +74,10 @@ def _sample(
 
 
 contact_force = event_tracker.between_steps(contact_history.load_to, contact_history.force)
-prestressed_force = event_tracker.between_steps(prestress.force, prestress.force)
+damped_force = event_tracker.between_steps(
+    contact_history.load_to, contact_history.force, damped=True
+)
+prestressed_force = event_tracker.between_steps(prestress.force, prestress.force, damped=True)
 
 
 def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
@@ -115,6 +119,7 @@ def _time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:  # noqa:
     _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride, flight, _ = model[:9]
     sag, beneath, lift, moments = model.sag, model.beneath, model.lift, model.moments
     fly = None if flight is None else _leaps(flight)
+    force = damped_force if extended else contact_force
 
     @inlined
     def imbalance(
@@ -177,7 +182,7 @@ def _time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:  # noqa:
                 contact.stress_across = case.stress_per_moment * across
                 F = prestressed_force(contact, events, pair, approach, step * dt, dt)
             else:
-                F = contact_force(contact, events, pair, approach, step * dt, dt)
+                F = force(contact, events, pair, approach, step * dt, dt)
             if beneath is not None and lift is not None:
                 delta += lift(state, contact, F) - beneath(state, now, F)
             if pair.bending != 0.0:
@@ -305,8 +310,8 @@ def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
 def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[..., None]:
     """Return the kernel of a model of the beam.
 
-    extended: with a load over the contact patch, strain rate, bending across the width and stress
-    beneath the contact, which other kernels are free of, so that they compile sooner.
+    extended: with a load over the contact patch, strain rate, bending across the width, stress
+    beneath the contact and damping, which other kernels are free of, so that they compile sooner.
 
     It solves every case of R, by records and arrays of as many rows. cases: CASE records. fibres:
     as by model.section.fibre_table. answers: blank RESPONSE records, filled. contacts, events:
@@ -366,6 +371,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
 
 _EULER_BERNOULLI = _kernel("euler_bernoulli", euler_bernoulli.MODEL)
 _LUMPED = _kernel("lumped", lumped.MODEL)
+_EXTENDED_LUMPED = _kernel("extended_lumped", lumped.MODEL, True)
 _LEAPFROG = {
     "euler_bernoulli": _EULER_BERNOULLI,
     "elastic": _EULER_BERNOULLI,
@@ -374,18 +380,23 @@ _LEAPFROG = {
     "rigid": _LUMPED,
 }
 _EXTENDED_EULER_BERNOULLI = _kernel("extended_euler_bernoulli", euler_bernoulli.MODEL, True)
-_EXTENDED = _LEAPFROG | {
+_EXTENDED = {
     "euler_bernoulli": _EXTENDED_EULER_BERNOULLI,
     "elastic": _EXTENDED_EULER_BERNOULLI,
     "timoshenko": _kernel("extended_timoshenko", strip.MODEL, True),
+    "spring_mass": _EXTENDED_LUMPED,
+    "rigid": _EXTENDED_LUMPED,
 }
 _MODAL = (_kernel("modal", modal.MODEL), _kernel("extended_modal", modal.MODEL, True))
 
 
 def is_extended(cases: Array) -> Array:
-    """Return which cases need an extended kernel: spread load, strain rate, strip, prestress."""
-    spread = (cases["load"] == CONTACT_PATCH) | (cases["beam_rate_coefficient"] > 0.0)
-    return spread | (cases["width_inertia"] > 0.0) | (cases["contact_prestress"] > 0)
+    """Return which cases need an extended kernel; of what, see _kernel."""
+    extended = (cases["load"] == CONTACT_PATCH) | (cases["beam_rate_coefficient"] > 0.0)
+    extended |= (cases["width_inertia"] > 0.0) | (cases["contact_prestress"] > 0)
+    for law in DAMPED:
+        extended |= cases["contact"] == law
+    return extended
 
 
 def kernel_of(beam_model: int, scheme: int, extended: bool = False) -> Callable[..., None]:

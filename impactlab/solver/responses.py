@@ -24,7 +24,7 @@ from impactlab.solver.contact.finite_element import (
 )
 from impactlab.solver.contact.history import Pair, energies
 from impactlab.solver.contact.stronge import yield_indentation
-from impactlab.solver.contact.switch import limit, radius
+from impactlab.solver.contact.switch import is_damped, limit, radius
 from impactlab.solver.jit import compiled
 from impactlab.solver.outputs import (
     CONTACT_CIRCLE_OUTSIDE_DATA,
@@ -66,7 +66,8 @@ def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) ->
     if events.delta == contact.approach_m:
         answer.status |= INDENTATION_STILL_GROWING
     else:
-        answer.peak_force = contact.peak_force if pair.prestress[0] > 0.0 else contact.F_m
+        tracked = pair.prestress[0] > 0.0 or is_damped(pair.law)
+        answer.peak_force = contact.peak_force if tracked else contact.F_m
         answer.time_of_peak_force = events.t_peak
         bends = pair.bending != 0.0
         answer.maximum_indentation = contact.largest if bends else contact.approach_m

@@ -13,6 +13,10 @@ The modal scheme takes the time in which a bar wave crosses a spacing, for accur
 D (modal.py) and dt^2 times the contact's term above must not exceed 4 together; D is at most 2:
 dt <= sqrt(2/contact), where n modes and the sum of those left out count 4/3 + 7/(6 n) times
 1/(rho A dx) at most (docs/modal.md). That is mostly far beyond, which few indentations show.
+
+A damper c of the contact (N s/m) counts as 4 c/dt beside k_c (contact_damping.py). With h, a half
+(modal: the whole) of c dt times what k_c is multiplied by, this makes the largest dt smaller by
+sqrt(1 + h^2) - h.
 """
 
 from __future__ import annotations
@@ -21,7 +25,7 @@ import math
 
 from impactlab.solver.beam import BeamGrid, make_grid
 from impactlab.solver.contact.history import PANELS, Pair, loading_work
-from impactlab.solver.contact.switch import curve
+from impactlab.solver.contact.switch import curve, damping, is_damped
 from impactlab.solver.jit import compiled
 from impactlab.solver.lumped import mid_span
 from impactlab.solver.responses import LARGEST_COMPLIANCE
@@ -59,7 +63,13 @@ def _stiffness(pair: Pair, delta: float) -> tuple[float, float]:
 
 @compiled
 def stiffest_contact(case: Record, pair: Pair, growth: float = _GROWTH) -> float:
-    """Return k_c in N/m, over all indentations that the sphere's energy can drive.
+    """Return k_c in N/m, over all indentations that the sphere's energy can drive."""
+    return _extremes(case, pair, growth)[0]
+
+
+@compiled
+def _extremes(case: Record, pair: Pair, growth: float) -> tuple[float, float]:
+    """Return the largest k_c (N/m) and damping (N s/m) of the contact.
 
     The indentation is raised until loading has taken all of that energy: no impact on a beam,
     which takes a part of it, goes deeper. growth: from one indentation to the next.
@@ -79,7 +89,16 @@ def stiffest_contact(case: Record, pair: Pair, growth: float = _GROWTH) -> float
             work += 0.5 * pair.compliance * (F_next * F_next - F * F)
         delta *= growth
         k_c, F = max(k_c, k), F_next
-    return k_c / max(1.0 + pair.compliance * k_c, 1.0 - LARGEST_COMPLIANCE)
+    v, c = case.velocity, 0.0
+    if is_damped(pair.law):  # which grows with the force
+        c = damping(pair.law, F, delta, v, pair.E, pair.R, pair.S_y, pair.nu) / v
+    return k_c / max(1.0 + pair.compliance * k_c, 1.0 - LARGEST_COMPLIANCE), c
+
+
+@compiled
+def _damped(dt: float, h: float) -> float:
+    """Return the largest step (s) under damping; dt (s): without."""
+    return dt * (math.sqrt(1.0 + h * h) - h)
 
 
 @compiled
@@ -94,10 +113,12 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
         wave = dx * math.sqrt(case.beam_density / case.beam_youngs_modulus)
         push += (1.0 / 3.0 + 7.0 / (6.0 * (case.nodes // 2))) / (mu * dx)
         about = _SAFETY * stiffest_contact(case, pair, _COARSE_GROWTH)
-        if about * push * wave * wave < 2.0:
+        if about * push * wave * wave < 2.0 and not is_damped(pair.law):
             return wave
-        return min(wave, math.sqrt(2.0 / (stiffest_contact(case, pair) * push)))
-    k_c = stiffest_contact(case, pair)
+        k_c, c = _extremes(case, pair, _GROWTH)
+        dt = math.sqrt(2.0 / (k_c * push))
+        return min(wave, _damped(dt, c * push * dt))
+    k_c, c = _extremes(case, pair, _GROWTH)
     if case.beam_model >= SPRING_MASS:
         omega_squared = k_c / case.sphere_mass
         if case.beam_model == SPRING_MASS:
@@ -116,7 +137,8 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
             contact += k_c * lever**2 / (case.width_inertia * dx)
     else:
         omega_squared = 16.0 * EI / (mu * dx**4)
-    return 2.0 / math.sqrt(omega_squared + contact)
+    dt = 2.0 / math.sqrt(omega_squared + contact)
+    return _damped(dt, 0.5 * c * contact / k_c * dt)
 
 
 @compiled

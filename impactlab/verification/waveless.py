@@ -17,6 +17,7 @@ from impactlab.verification.cases import Sweep, elastic, rigid_backed
 from impactlab.verification.finding import Comparisons, Curve, Finding, Panel, check
 from impactlab.verification.solutions import hertz, lumped, modal
 from impactlab.verification.solutions.contact_laws import LAWS, LawOnHalfSpace, law_on_half_space
+from impactlab.verification.solutions.hunt_crossley import HuntCrossleyImpact
 from impactlab.verification.solutions.stronge import stronge_impact
 
 # With so small a Courant number the contact alone determines the time step.
@@ -125,6 +126,46 @@ def _force_curves(run: xr.Dataset, law: LawOnHalfSpace, mass: float) -> list[Cur
     depth = np.linspace(1e-3, 1.0, 101) * law.maximum_indentation(DRAWN, mass)
     force = np.array([law.loading_force(float(d)) for d in depth])
     return [Curve(law.law, *ours), Curve(_QUADRATURE, depth, force, independent=True)]
+
+
+@check(
+    "Viscous contact on a half-space",
+    "Hunt and Crossley 1975; the first integral in impactlab.verification.solutions.hunt_crossley",
+)
+def viscous_contact() -> Finding:
+    """Compare restitution, peak force, indentation and dissipation, and the order in time."""
+    tables, restitutions = [], []
+    for velocity in VELOCITIES:
+        impact = replace(rigid_backed(velocity, "hunt_crossley"), beam_model="rigid")
+        runs = [_run_rigid_beam(impact, courant=courant) for courant in (1.0, 0.5)]
+        mass, exact = impact.sphere.total_mass, _viscous(impact)
+        expected = {
+            "restitution": exact.restitution,
+            "peak_force": exact.peak_force,
+            "maximum_indentation": exact.maximum_indentation,
+            "contact_dissipation": 0.5 * mass * velocity**2 * (1.0 - exact.restitution**2),
+        }
+        where = f"{velocity:g} m/s"
+        tables.append(Comparisons(where).responses(runs[1], expected, RIGID_TOLERANCE))
+        restitutions.append(runs[1].restitution.item())
+    comparisons = Comparisons().worst(tables)
+    coarse, fine = (run.restitution.item() - exact.restitution for run in runs)  # of the fastest
+    label, order = "order of restitution in the time step", float(np.log2(coarse / fine))
+    comparisons += Comparisons(where).absolute(label, "1", order, 2.0, 0.1)
+    speeds = np.geomspace(VELOCITIES[0], VELOCITIES[-1], 61)
+    impacts = [_viscous(rigid_backed(float(speed), "hunt_crossley")) for speed in speeds]
+    expected_curve = np.array([impact.restitution for impact in impacts])
+    curves = [
+        Curve("hunt_crossley", np.array(VELOCITIES), np.array(restitutions)),
+        Curve("first integral", speeds, expected_curve, independent=True),
+    ]
+    panel = Panel("restitution against velocity", _VELOCITY, _RESTITUTION, curves, log=True)
+    return Finding(comparisons, [panel])
+
+
+def _viscous(impact: Impact) -> HuntCrossleyImpact:
+    mass, stiffness = impact.sphere.total_mass, hertz.contact_stiffness(impact)
+    return HuntCrossleyImpact(mass, impact.velocity, stiffness)
 
 
 HISTORIES = "contact_force", "midspan_deflection", "sphere_displacement", "indentation"
@@ -242,8 +283,9 @@ def rigid_beam() -> Finding:
     return Finding([*comparisons, *slow], [Panel(title, *_FORCE_AXES, curves)])
 
 
-def _run_rigid_beam(impact: Impact, samples: int = 2) -> xr.Dataset:
+def _run_rigid_beam(impact: Impact, samples: int = 2, courant: float = 0.9) -> xr.Dataset:
     """Solve on a rigid beam until the sphere has left."""
-    model, grid = replace(impact, beam_model="rigid"), Discretisation(nodes=11, points=3)
+    model = replace(impact, beam_model="rigid")
+    grid = Discretisation(nodes=11, points=3, courant=courant)
     duration = 2.0 * hertz.contact_duration(*hertz.arguments(impact))
     return run_dataset(model, grid, duration=duration, samples=samples)

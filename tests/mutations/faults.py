@@ -33,6 +33,12 @@ FAULTS = (
         "along * contact.F_m + left",
     ),
     Fault(
+        "contact: damping at the rate half a step before",
+        "contact_damping.py",
+        "(3.0 * approach - 4.0 * before + earlier) / (2.0 * dt)",
+        "(approach - before) / dt",
+    ),
+    Fault(
         "contact: sign of the axis' lift by pressure",
         "contact/axis_lift.py",
         "lift = pressure * F",

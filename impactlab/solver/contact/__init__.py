@@ -1,8 +1,8 @@
 """Contact laws: the registry. The equations of a law are in the file of its name.
 
-A new law takes a file with the functions `curve`, `limit` and `radius` (see hertz.py) and an entry
-at the end of the registry. This file stays free of numba, so that laws can be listed without
-compiling any.
+A new law takes a file with the functions `curve`, `limit` and `radius`, a viscous one `damping`,
+too (see hertz.py), and an entry at the end of the registry. This file stays free of numba, so that
+laws can be listed without compiling any.
 """
 
 from __future__ import annotations
@@ -241,6 +241,17 @@ _REGISTRY = (
             "flat (a rigid one: lower by 8 %)"
         ),
         yield_pressure=1.65,
+    ),
+    ContactLaw(
+        name="hunt_crossley",
+        short="Hunt-Crossley",
+        title="Hunt and Crossley",
+        source="Hunt and Crossley 1975 (J. Applied Mechanics 42, 440), with Hertz's stiffness",
+        holds_for=f"viscous bodies that do not yield, {_CIRCLE} (indentation up to its radius)",
+        unconfirmed=(
+            "that metal loses energy like this; the loss of restitution of 0.08 per m/s, which is "
+            "remembered as the lower end of 0.08 to 0.32 for steel, bronze and ivory"
+        ),
     ),
 )
 CONTACT_LAWS: dict[str, ContactLaw] = {law.name: law for law in _REGISTRY}

@@ -8,6 +8,9 @@ effective radius R (m), the softer body's yield stress S_y (Pa) and Poisson's ra
 unloads from there, K (d - delta_r)^n. `limit` gives the indentation (m) up to which the law holds;
 why, and what of the law is not confirmed, is in the registry (__init__.py). `radius` gives the
 radius (m) of the contact circle while the contact is loaded.
+
+A viscous law has a fourth function, `damping` (see hunt_crossley.py): the force (N) to add to F,
+the force on its curve, where the approach is delta (m) and grows at `rate` (m/s).
 """
 
 from __future__ import annotations

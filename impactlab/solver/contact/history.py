@@ -51,7 +51,7 @@ class Pair(NamedTuple):
 CONTACT = record(
     """
     delta_m F_m K delta_r n work delta_w approach_m largest shift shift_before bending_work
-    stress_along stress_across peak_force
+    stress_along stress_across peak_force damping damping_work
     """
 )
 """delta_m (m), F_m (N): furthest point on the loading curve. K (N/m^n), delta_r (m), n: the
@@ -59,7 +59,8 @@ unloading curve from there. work (J): integral of the loading force from 0 to de
 approach_m (m): the approach at delta_m. Where bending counts, shift (m): what it adds to the
 approach, now and a step before; bending_work (J): of the force on it; largest (m): approach and
 shift. With prestress: stress_along, stress_across (Pa), by bending, of the beam's lower face;
-peak_force (N); approach_m is the largest of all, and work what is dissipated."""
+approach_m is the largest of all, and work what is dissipated. peak_force (N): with prestress, or a
+damped law, whose damping (N) at the last step has taken damping_work (J)."""
 
 PANELS = 8
 _ITERATIONS, _MARCHES, _ROUNDING = 60, 1000, 1e-14
@@ -295,4 +296,4 @@ def energies(
     if pair.compliance != 0.0:
         F = contact.K * over**contact.n
         stored += 0.5 * pair.compliance * F * F + contact.bending_work
-    return stored, contact.work - released
+    return stored, contact.work - released + contact.damping_work

@@ -130,7 +130,7 @@ def test_work_along_a_path_is_stored_or_dissipated(law):
     stored, dissipated = energies(contact, pair, -DEEP)
     assert stored == 0.0
     assert dissipated == pytest.approx(rest, abs=1e-5 * first)
-    assert dissipated > 0.1 * first or law == "hertz"
+    assert dissipated > 0.1 * first or law in ("hertz", "hunt_crossley")
 
 
 def test_pair_of_the_papers_case(make_case):

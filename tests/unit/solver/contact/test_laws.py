@@ -157,7 +157,7 @@ def test_energy_created_and_where(law):
     else:
         assert creating[[0, -1]] == pytest.approx(flaws.creates, abs=5e-3)
     assert (delta_r / deltas).min() == pytest.approx(flaws.dent, abs=2e-4)
-    assert restitution[-1] < 0.6 or law == "hertz"
+    assert restitution[-1] < 0.6 or law in ("hertz", "hunt_crossley")  # its loss is the damper's
 
 
 @every_law
