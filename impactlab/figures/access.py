@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import reduce
+from operator import or_
 from statistics import NormalDist
 
 import numpy as np
@@ -117,9 +119,7 @@ def failed(runs: xr.Dataset) -> xr.DataArray:
     marks = [absent(runs, name) for name in responses(runs)]
     if "status" in runs:
         marks.append((runs["status"] & FAILED) != 0)
-    if not marks:
-        return xr.DataArray(False)
-    return xr.concat(marks, "mark", coords="minimal", compat="override").any("mark")
+    return reduce(or_, marks, xr.DataArray(False))
 
 
 def causes(runs: xr.Dataset, mask: xr.DataArray) -> Counter[str]:
@@ -135,7 +135,7 @@ def causes(runs: xr.Dataset, mask: xr.DataArray) -> Counter[str]:
 def missing_note(runs: xr.Dataset, variables: Sequence[str]) -> str:
     """Return a caption's sentence on the runs that lack one of the variables; "" without any."""
     held = [absent(runs, name) for name in variables if name in runs]
-    mask = xr.concat(held, "variable").any("variable") if held else xr.DataArray(False)
+    mask = reduce(or_, held, xr.DataArray(False))
     return missing_words(runs, mask, "here" if len(held) == 1 else "in one panel or more")
 
 

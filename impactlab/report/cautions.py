@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import reduce
+from operator import and_
 
 import numpy as np
 import xarray as xr
@@ -48,7 +50,7 @@ def cautions(runs: xr.Dataset) -> Iterator[str]:
 def endings(runs: xr.Dataset) -> str:
     """Return how many runs failed, and how many merely lack a response; "" where none does."""
     gaps = [access.absent(runs, name) for name in responses(runs)]
-    empty = xr.concat(gaps, "gap").all("gap") if gaps else access.failed(runs)
+    empty = reduce(and_, gaps) if gaps else access.failed(runs)
     failed, lacking = int(empty.sum()), int((access.failed(runs) & ~empty).sum())
     counts = [f"{failed:,} failed"] * bool(failed)
     counts += [f"{lacking:,} without an answer"] * bool(lacking)

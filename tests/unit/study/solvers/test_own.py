@@ -182,7 +182,7 @@ def test_names_of_every_dataset_are_refused_before_anything_is_solved(name):
         il.Study(title="Taken", function=product, responses=[name], sampling=PLANE)
 
 
-@pytest.mark.parametrize("name", ["x", "b", "time", "duration", "name", "value", "model"])
+@pytest.mark.parametrize("name", ["x", "b", "time", "mark", "name", "value", "term"])
 def test_other_names_are_as_good_as_any(name):
     sampling = il.Grid(parameters={name: [1, 2], "a": [1, 2]})
     call = eval(f"lambda a, {name}: a * {name}")
