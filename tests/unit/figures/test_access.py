@@ -9,13 +9,10 @@ from impactlab.figures.access import usable, verdict
 from impactlab.variables import STATUS_FLAGS
 
 
-def test_nothing_is_said_when_nothing_is_missing(velocity_study):
+def test_nothing_is_said_when_nothing_is_missing(velocity_study, failing):
     runs, _ = velocity_study
     assert access.missing_note(runs, ["peak_force", "contact_force"]) == ""
-
-
-def test_missing_runs_are_counted_with_their_reasons(velocity_study, failing):
-    runs, _ = velocity_study
+    # missing runs are counted with their reasons
     broken = failing(failing(runs, {"velocity": 5, "contact": 1}), {"velocity": 6, "contact": 0})
     bit, words = STATUS_FLAGS["first_contact_unfinished"]
     broken["status"][{"velocity": 6, "contact": 0}] = bit
@@ -46,13 +43,6 @@ def test_intervals_of_means_by_word_cover_the_means(method):
     assert np.isnan(access.means_by_word(runs, "word", "y")["a"]).all()
 
 
-def test_a_gap_without_a_status_is_not_silent(velocity_study):
-    runs, _ = velocity_study
-    runs["peak_force"][0, 0] = np.nan
-    assert access.UNEXPLAINED in access.missing_note(runs, ["peak_force"])
-    assert access.UNEXPLAINED in access.missing_note(runs.drop_vars("status"), ["peak_force"])
-
-
 def test_status_overrules_a_number(velocity_study):
     runs, _ = velocity_study
     runs["status"][0, 0] = STATUS_FLAGS["first_contact_unfinished"][0]
@@ -60,6 +50,10 @@ def test_status_overrules_a_number(velocity_study):
     assert np.isfinite(usable(runs, "number_of_contacts")[0, 0])
     runs["status"][0, 0] = STATUS_FLAGS["diverged"][0]
     assert np.isnan(usable(runs, "contact_force")[0, 0]).all()
+    # a gap without a status is not silent
+    runs["peak_force"][0, 0] = np.nan
+    assert access.UNEXPLAINED in access.missing_note(runs, ["peak_force"])
+    assert access.UNEXPLAINED in access.missing_note(runs.drop_vars("status"), ["peak_force"])
 
 
 def test_a_history_is_missing_only_when_all_of_it_is():
@@ -75,16 +69,10 @@ def test_flag_soundness_and_meaning(discretisation_study):
     assert bad is not None
     assert (good.words, good.sound) == ("converged", True)
     assert (bad.flag, bad.sound, bad.meaning) == ("divergent", False, "meaning of divergent")
-
-
-def test_no_verdict_where_there_is_none(discretisation_study):
-    _, analysis = discretisation_study
+    # no verdict where there is none
     assert verdict(analysis, "sensitivity_verdict", "peak_force") is None
     assert verdict(analysis, "nodes_summary", "no_such_response") is None
-
-
-def test_an_unknown_number_is_not_sound(discretisation_study):
-    _, analysis = discretisation_study
+    # an unknown number is not sound
     analysis["nodes_summary"].loc[{"response": "peak_force"}] = 99
     found = verdict(analysis, "nodes_summary", "peak_force")
     assert found is not None

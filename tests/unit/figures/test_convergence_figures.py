@@ -25,6 +25,15 @@ def test_differences_are_to_the_extrapolated_value(study):
     np.testing.assert_allclose(difference, abs(values - limit) / limit)
     order = np.polyfit(np.log(spacing), np.log(difference), 1)[0]
     assert order == pytest.approx(2.0, abs=0.1)
+    # the guide has second order
+    x, y = curve(panel(NODES.plot(*study), "Peak force"), "_guide: second order")
+    assert np.log(y[1] / y[0]) / np.log(x[1] / x[0]) == pytest.approx(2.0)
+    # the bar reaches up to the uncertainty
+    axes = panel(NODES.plot(runs, analysis), "Peak force")
+    spacing, errors = curve(axes, "0.99 m/s, 3 points")
+    x, y = curve(axes, "_bar")
+    assert x.tolist() == [spacing.min()] * 2
+    np.testing.assert_allclose(y, [errors[-1], 2e-3])
 
 
 def test_without_an_extrapolated_value_the_finest_is_the_reference(study):
@@ -33,6 +42,11 @@ def test_without_an_extrapolated_value_the_finest_is_the_reference(study):
     values = runs["peak_plastic_strain"].sel(velocity=15.0, points=17, rule="lobatto").values
     np.testing.assert_allclose(difference[:2], abs(values[:2] - values[2]) / values[2])
     assert np.isnan(difference[2])
+    # elastic runs have no curve of plastic strain
+    axes = panel(NODES.plot(*study), "Peak plastic strain")
+    labels = {str(line.get_label()) for line in axes.lines}
+    curves = {label for label in labels if not label.startswith("_")}
+    assert curves == {"15 m/s, 3 points", "15 m/s, 17 points"}
 
 
 def test_the_legend_keeps_the_order_of_the_curves(study):
@@ -43,13 +57,6 @@ def test_the_legend_keeps_the_order_of_the_curves(study):
     legend = POINTS.plot(runs, analysis).legends[0]
     labels = [text.get_text() for text in legend.get_texts()]
     assert labels[:2] == ["Gauss-Lobatto, 0.99 m/s", "Gauss-Lobatto, 15 m/s"]
-
-
-def test_elastic_runs_have_no_curve_of_plastic_strain(study):
-    axes = panel(NODES.plot(*study), "Peak plastic strain")
-    labels = {str(line.get_label()) for line in axes.lines}
-    curves = {label for label in labels if not label.startswith("_")}
-    assert curves == {"15 m/s, 3 points", "15 m/s, 17 points"}
 
 
 def test_verdicts_are_written_and_warnings_stand_out(study):
@@ -64,30 +71,20 @@ def test_verdicts_are_written_and_warnings_stand_out(study):
     assert words(strain) == ["not yet converged"]
 
 
-def test_the_guide_has_second_order(study):
-    x, y = curve(panel(NODES.plot(*study), "Peak force"), "_guide: second order")
-    assert np.log(y[1] / y[0]) / np.log(x[1] / x[0]) == pytest.approx(2.0)
-
-
-def test_what_does_not_change_says_so(study):
+def test_what_does_not_change_says_so(study, failing):
     contacts = "Number of contacts"
     assert "same on every grid" in words(panel(NODES.plot(*study), contacts))
     assert "same for every number" in words(panel(POINTS.plot(*study), contacts))
-
-
-def test_one_value_is_not_the_same_everywhere(study, failing):
-    runs, analysis = study
-    broken = failing(runs, {"nodes": slice(1, None)})
-    assert "too few values" in words(panel(NODES.plot(broken, analysis), "Number of contacts"))
-    analysis["points_error"].loc[{"points": [3, 5, 9]}] = np.nan
-    assert "too few values" in words(panel(POINTS.plot(runs, analysis), "Number of contacts"))
-
-
-def test_round_off_is_no_difference(study):
+    # round off is no difference
     runs, analysis = study
     analysis["points_error"].loc[{"response": "number_of_contacts", "points": 3}] = 1e-12
     axes = panel(POINTS.plot(runs, analysis), "Number of contacts")
     assert "same for every number" in words(axes)
+    # one value is not the same everywhere
+    broken = failing(runs, {"nodes": slice(1, None)})
+    assert "too few values" in words(panel(NODES.plot(broken, analysis), "Number of contacts"))
+    analysis["points_error"].loc[{"points": [3, 5, 9]}] = np.nan
+    assert "too few values" in words(panel(POINTS.plot(runs, analysis), "Number of contacts"))
 
 
 def test_failed_runs_leave_gaps_in_both(study, failing):
@@ -151,20 +148,17 @@ def test_an_assumed_order_is_in_brackets(study):
     assert _orders(axes) == ["p = 2.00"] * 2 + ["[p = 2]"] * 2
 
 
-def test_the_bar_reaches_up_to_the_uncertainty(study):
-    runs, analysis = study
-    axes = panel(NODES.plot(runs, analysis), "Peak force")
-    spacing, errors = curve(axes, "0.99 m/s, 3 points")
-    x, y = curve(axes, "_bar")
-    assert x.tolist() == [spacing.min()] * 2
-    np.testing.assert_allclose(y, [errors[-1], 2e-3])
-
-
 def test_an_infinite_uncertainty_has_no_bar(study):
     runs, analysis = study
     analysis["nodes_uncertainty"][:] = np.inf
     lines = panel(NODES.plot(runs, analysis), "Peak force").lines
     assert "_bar" not in {line.get_label() for line in lines}
+    # The finest value of the strain is its own reference: no cap stands alone.
+    analysis["nodes_uncertainty"].loc[{"response": "peak_plastic_strain"}] = 0.1
+    lines = panel(NODES.plot(runs, analysis), "Peak plastic strain").lines
+    bars = [line for line in lines if line.get_label() == "_bar"]
+    assert {line.get_markerfacecolor() for line in bars} == {"white"}
+    assert "_" not in {line.get_marker() for line in bars}
 
 
 def test_time_steps_at_fixed_nodes(time_step_study):
@@ -205,13 +199,3 @@ def test_what_has_no_limit_by_design_is_drawn_as_it_is(study):
     caption = NODES.caption(runs, judged)
     warned = "Not converged on the finest grid: peak force (15 m/s); peak plastic strain (every"
     assert warned in caption
-
-
-def test_an_uncertainty_without_a_difference_has_the_marker_of_its_curve(study):
-    """The finest value of the strain is its own reference: no cap stands alone."""
-    runs, analysis = study
-    analysis["nodes_uncertainty"].loc[{"response": "peak_plastic_strain"}] = 0.1
-    lines = panel(NODES.plot(runs, analysis), "Peak plastic strain").lines
-    bars = [line for line in lines if line.get_label() == "_bar"]
-    assert {line.get_markerfacecolor() for line in bars} == {"white"}
-    assert "_" not in {line.get_marker() for line in bars}

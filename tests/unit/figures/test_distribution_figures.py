@@ -55,9 +55,7 @@ def test_each_parameter_above_the_limit_beside_the_others(study):
     assert "in the {} draws with a peak force above 35 kN, and in the other {}.".format(
         *counts
     ) in record.caption(runs, analysis)
-
-
-def test_without_a_draw_on_either_side_there_is_no_figure(study):
+    # without a draw on either side there is no figure
     runs, _ = study
     runs = runs.assign_attrs(limits=1e6)
     assert "exceedance_peak_force" not in applicable(runs, distribution.analysis(runs))

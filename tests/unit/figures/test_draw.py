@@ -81,15 +81,11 @@ def test_png_has_300_dots_an_inch_and_svg_no_date(study, tmp_path):
     text = svg.read_text("utf-8")
     assert "<dc:date>" not in text
     assert "<text" not in text  # paths: the same look with any fonts
-
-
-def test_the_style_does_not_leak(study, tmp_path):
+    # the style does not leak
     before = dict(matplotlib.rcParams)
     CATALOGUE["contact_duration"].plot(*study)
     assert dict(matplotlib.rcParams) == before
-
-
-def test_the_users_own_style_does_not_get_in(study, tmp_path):
+    # the users own style does not get in
     plain = save(CATALOGUE["contact_duration"].plot(*study), tmp_path, "a")[0].read_bytes()
     with matplotlib.rc_context({"font.size": 30, "axes.facecolor": "pink", "text.color": "red"}):
         other = save(CATALOGUE["contact_duration"].plot(*study), tmp_path, "b")[0].read_bytes()
@@ -145,17 +141,13 @@ def test_every_point_that_is_drawn_and_no_guide(tmp_path):
         (-0.25, 1.0),
     ]
     assert len(found) == 6
-
-
-def test_netcdf_holds_the_same(tmp_path):
+    # netcdf holds the same
     paths = data.save(made_figure(), tmp_path, "made_figure")
     stored = read_netcdf(paths[1], "figure")
     assert stored["x"].values.tolist() == [float(row["x"]) for row in rows(paths[0])]
     assert stored["points"].values.tolist() == [2, 2, 2]
     assert stored["curve_label"].values.tolist() == ["one", "", "first"]
-
-
-def test_a_figure_without_curves_leaves_no_files(tmp_path):
+    # a figure without curves leaves no files
     data.save(made_figure(), tmp_path, "made_figure")
     assert data.save(Figure(), tmp_path, "made_figure") == []
     assert list(tmp_path.iterdir()) == []

@@ -54,9 +54,7 @@ def test_every_comparison_is_a_point_and_the_failed_ones_look_different(outcomes
     assert axes.get_xlim()[1] >= np.max(ends[0].get_xdata())
     said = [text.get_text() for text in axes.texts]
     assert said == ["all 3", "3 of 18 failed", "error", "nothing"]
-
-
-def test_the_data_have_every_comparison_with_its_check(outcomes):
+    # the data have every comparison with its check
     curves = list(data.drawn(drawn.plot_overview(outcomes)))
     assert sum(curve.x.size for curve in curves) == 21
     assert sum(curve.x.size for curve in curves if curve.curve == "failed") == 3
@@ -66,9 +64,7 @@ def test_the_data_have_every_comparison_with_its_check(outcomes):
     assert text.startswith("Error over tolerance (–): ")
     assert "largest for A bad check" in text
     assert "all 3" not in text  # a note beside data, none in place of them
-
-
-def test_the_caption_counts_what_lies_at_the_edges(outcomes):
+    # the caption counts what lies at the edges
     assert "1 above 1000 or without a number at the right edge" in drawn.overview_caption(outcomes)
     assert "triangles" not in drawn.overview_caption(outcomes[:1])
 
@@ -117,18 +113,7 @@ def test_ours_and_independent_curves_differ_without_colour(outcomes):
     assert marked.get_marker() not in ("", "None")
     assert marked.get_markerfacecolor() != "none"
     assert open_.get_markerfacecolor() == "none"
-
-
-def test_few_points_beside_a_dense_curve_are_not_joined(outcomes):
-    x, dense = np.arange(5.0), np.linspace(0.0, 4.0, 99)
-    curves = [Curve("solver", x, x**2), Curve("closed form", dense, dense**2, True)]
-    panel = Panel("t", ("x", "m"), ("y", "m"), curves)
-    (axes,) = drawn.plot_curves(_with_panels(outcomes, panel)).axes
-    assert [line.get_linestyle() for line in axes.lines] == ["None", "--"]
-    assert [line.get_marker() for line in axes.lines] == ["o", ""]
-
-
-def test_axes_are_in_display_units_and_decades(outcomes):
+    # axes are in display units and decades
     force, error = drawn.plot_curves(outcomes[1]).axes
     assert (force.get_xlabel(), force.get_ylabel()) == ("Time (ms)", "Contact force (kN)")
     assert np.max(force.lines[0].get_xdata()) == pytest.approx(1.0)
@@ -138,14 +123,19 @@ def test_axes_are_in_display_units_and_decades(outcomes):
     assert error.get_ylabel().replace("\n", " ").endswith("(–)")
 
 
-def test_a_curve_named_as_the_solvers_is_told_apart(outcomes):
+def test_few_points_beside_a_dense_curve_are_not_joined(outcomes):
+    x, dense = np.arange(5.0), np.linspace(0.0, 4.0, 99)
+    curves = [Curve("solver", x, x**2), Curve("closed form", dense, dense**2, True)]
+    panel = Panel("t", ("x", "m"), ("y", "m"), curves)
+    (axes,) = drawn.plot_curves(_with_panels(outcomes, panel)).axes
+    assert [line.get_linestyle() for line in axes.lines] == ["None", "--"]
+    assert [line.get_marker() for line in axes.lines] == ["o", ""]
+    # a curve named as the solvers is told apart
     x = np.arange(3.0)
     panel = Panel("t", ("x", "m"), ("y", "m"), [Curve("steel", x, x), Curve("steel", x, x, True)])
     (axes,) = drawn.plot_curves(_with_panels(outcomes, panel)).axes
     assert [line.get_label() for line in axes.lines] == ["steel", "steel, independent"]
-
-
-def test_nothing_to_draw_is_said(outcomes):
+    # nothing to draw is said
     x = np.arange(3.0)
     below = Panel("t", ("x", "m"), ("y", "m"), [Curve("a", x, -1.0 - x)], log=True)
     missing = Panel("t", ("x", "m"), ("y", "m"), [Curve("a", x, x * np.nan)])

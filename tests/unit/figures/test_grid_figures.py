@@ -25,6 +25,11 @@ def test_every_law_has_a_curve_of_its_own_look_in_every_panel(laws_study):
         assert len(lines) == len(LAWS)
         looks = [_look(line) for line in lines]
         assert all(one != other for one, other in combinations(looks, 2))
+    # it needs three laws on a grid
+    runs, analysis = laws_study
+    assert LAWS_FIGURE.applies(runs, analysis)
+    assert not LAWS_FIGURE.applies(runs.isel(contact=slice(2)), analysis)
+    assert not LAWS_FIGURE.applies(runs.isel(velocity=[0]), analysis)
 
 
 def test_curves_are_the_stored_values(laws_study):
@@ -33,10 +38,7 @@ def test_curves_are_the_stored_values(laws_study):
     (line,) = (line for line in ax.lines if line.get_label() == "Modified Jackson and Green")
     assert line.get_xdata().tolist() == [0.1, 1.0, 10.0]
     assert line.get_ydata().tolist() == runs["restitution"].sel(contact="mjg").values.tolist()
-
-
-def test_runs_beyond_a_laws_range_are_open_and_the_caption_says_so(laws_study):
-    runs, _ = laws_study
+    # runs beyond a laws range are open and the caption says so
     ax = LAWS_FIGURE.plot(runs, NONE).axes[1]
     points = [line for line in ax.lines if line.get_label() == "_open" and line.get_xdata().size]
     assert len(points) == 1
@@ -47,35 +49,30 @@ def test_runs_beyond_a_laws_range_are_open_and_the_caption_says_so(laws_study):
     assert "Open" not in LAWS_FIGURE.caption(sound, NONE)
 
 
-def test_it_needs_three_laws_on_a_grid(laws_study):
-    runs, analysis = laws_study
-    assert LAWS_FIGURE.applies(runs, analysis)
-    assert not LAWS_FIGURE.applies(runs.isel(contact=slice(2)), analysis)
-    assert not LAWS_FIGURE.applies(runs.isel(velocity=[0]), analysis)
-
-
 def test_changes_in_per_cent_against_depth_over_span(shear_study):
     axes = SHEAR_FIGURE.plot(*shear_study).axes
     for ax, change in zip(axes[:2], (-30.0 * DEPTHS, 240.0 * DEPTHS), strict=True):
         x, y = curve(ax, "5 m/s")
         assert x == pytest.approx(DEPTHS / 0.78)
         assert y == pytest.approx(change)
-
-
-def test_below_the_same_against_depth_over_the_duration_without_shear(shear_study):
+    # below the same against depth over the duration without shear
     runs, _ = shear_study
     x, y = curve(SHEAR_FIGURE.plot(runs, NONE).axes[2], "0.25 m/s")
     durations = runs["contact_duration"].sel(velocity=0.25, beam_model="euler_bernoulli").values
     assert x == pytest.approx(DEPTHS / durations)
     assert y == pytest.approx(-30.0 * DEPTHS)
-
-
-def test_the_caption_says_by_the_data_when_shear_matters(shear_study):
-    runs, _ = shear_study
+    # the caption says by the data when shear matters
     text = SHEAR_FIGURE.caption(runs, NONE)
     assert "peak force changes by −2.4 to −0.3 %, by 1 % or more in 4 of 8 impacts" in text
     assert "(depth over span 0.051 to 0.1)" in text
     assert "contact duration changes by 2.4 to 19 %, by 1 % or more in 8 of 8 impacts" in text
+    # it needs three depths and both models of yielding fibres
+    assert SHEAR_FIGURE.applies(runs, NONE)
+    assert not SHEAR_FIGURE.applies(runs.isel(beam_depth=slice(2)), NONE)
+    assert not SHEAR_FIGURE.applies(runs.isel(beam_model=[1]), NONE)
+    elastic = runs.assign_coords(beam_model=["elastic", "timoshenko"])
+    assert not SHEAR_FIGURE.applies(elastic, NONE)
+    assert not SHEAR_FIGURE.applies(runs.drop_vars("contact_duration"), NONE)
 
 
 def test_a_failed_run_leaves_a_gap_and_is_counted(shear_study, failing):
@@ -84,13 +81,3 @@ def test_a_failed_run_leaves_a_gap_and_is_counted(shear_study, failing):
     assert np.isnan(y).tolist() == [False, False, True, False]
     assert "in 3 of 7 impacts" in SHEAR_FIGURE.caption(runs, NONE)
     assert "1 of 16 runs is missing" in SHEAR_FIGURE.caption(runs, NONE)
-
-
-def test_it_needs_three_depths_and_both_models_of_yielding_fibres(shear_study):
-    runs, _ = shear_study
-    assert SHEAR_FIGURE.applies(runs, NONE)
-    assert not SHEAR_FIGURE.applies(runs.isel(beam_depth=slice(2)), NONE)
-    assert not SHEAR_FIGURE.applies(runs.isel(beam_model=[1]), NONE)
-    elastic = runs.assign_coords(beam_model=["elastic", "timoshenko"])
-    assert not SHEAR_FIGURE.applies(elastic, NONE)
-    assert not SHEAR_FIGURE.applies(runs.drop_vars("contact_duration"), NONE)

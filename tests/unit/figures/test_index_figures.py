@@ -29,15 +29,11 @@ def test_bars_and_intervals_are_the_stored_ones(study):
         segments = container.errorbar.lines[2][0].get_segments()
         halves = [(segment[1][0] - segment[0][0]) / 2 for segment in segments]
         np.testing.assert_allclose(halves, stored[f"{order}_interval"])
-
-
-def test_parameters_are_in_plain_words(study):
+    # parameters are in plain words
     axes = CATALOGUE["sobol_indices"].plot(*study).axes[0]
     labels = [label.get_text() for label in axes.get_yticklabels()]
     assert labels[:2] == ["impact velocity", "yield stress of the beam"]
-
-
-def test_undefined_indices_say_why_and_draw_nothing(study):
+    # undefined indices say why and draw nothing
     axes = panel(CATALOGUE["sobol_indices"].plot(*study), "Number of contacts")
     assert words(axes) == ["undefined:\nconstant"]
 
@@ -60,6 +56,15 @@ def test_pairs_are_shown_once_and_only_significant_ones_have_numbers(study):
     assert len(written) == int((abs(pairs(index)) > pairs(margin)).sum()) < 6
     assert ".07" in written
     assert "−.01" not in written
+    # without intervals no pair is significant
+    figure = CATALOGUE["sobol_second_order"]
+    assert not figure.applies(runs, analysis.drop_vars("second_order_interval"))
+    # responses without a significant pair are left out
+    figure = CATALOGUE["sobol_second_order"]
+    shown = len(figure.plot(runs, analysis).axes) - 1  # and the bar of colours
+    assert f"Left out: {3 - shown} response" in figure.caption(runs, analysis)
+    analysis["second_order_interval"][:] = 1.0
+    assert not figure.applies(runs, analysis)
 
 
 def test_pairs_of_a_symmetric_matrix_and_of_its_upper_half_are_the_same(study):
@@ -70,21 +75,6 @@ def test_pairs_of_a_symmetric_matrix_and_of_its_upper_half_are_the_same(study):
     np.testing.assert_array_equal(pairs(upper), pairs(lower))
     np.testing.assert_array_equal(pairs(upper), pairs(symmetric))
     assert np.isfinite(pairs(symmetric)).sum() == 6
-
-
-def test_without_intervals_no_pair_is_significant(study):
-    runs, analysis = study
-    figure = CATALOGUE["sobol_second_order"]
-    assert not figure.applies(runs, analysis.drop_vars("second_order_interval"))
-
-
-def test_responses_without_a_significant_pair_are_left_out(study):
-    runs, analysis = study
-    figure = CATALOGUE["sobol_second_order"]
-    shown = len(figure.plot(runs, analysis).axes) - 1  # and the bar of colours
-    assert f"Left out: {3 - shown} response" in figure.caption(runs, analysis)
-    analysis["second_order_interval"][:] = 1.0
-    assert not figure.applies(runs, analysis)
 
 
 def test_histograms_count_every_finite_run(study, failing):
@@ -133,7 +123,7 @@ def test_a_value_that_most_runs_share_is_told_and_does_not_hide_the_rest(study):
     assert "Mostly one value, drawn without it: restitution." in caption
 
 
-def test_points_are_runs_held_out_in_the_panels_unit(study):
+def test_points_are_runs_held_out_in_the_panels_unit(study, failing):
     runs, analysis = study
     axes = panel(surrogate_validation.plot(runs, analysis), "Peak force (kN)")
     x, y = next(line for line in axes.lines if line.get_label() == "runs held out").get_data()
@@ -141,19 +131,13 @@ def test_points_are_runs_held_out_in_the_panels_unit(study):
     np.testing.assert_allclose(x, runs["peak_force"].sel(run=held_out) / 1e3)
     np.testing.assert_allclose(y, analysis["surrogate_held_out"].sel(response="peak_force") / 1e3)
     assert words(axes) == ["Q² = 0.9876"]
-
-
-def test_a_run_that_failed_is_no_point(study, failing):
-    runs, analysis = study
+    # a run that failed is no point
     broken = failing(runs, {"run": slice(0, 101)})
     axes = panel(surrogate_validation.plot(broken, analysis), "Peak force")
     line = next(line for line in axes.lines if line.get_label() == "runs held out")
     assert len(line.get_data()[0]) == analysis.sizes["held_out"] - 21
     assert "101 of 256 runs are missing" in surrogate_validation.caption(broken, analysis)
-
-
-def test_no_surrogate_says_why_and_an_unsound_one_warns(study):
-    runs, analysis = study
+    # no surrogate says why and an unsound one warns
     analysis["surrogate_verdict"].loc[{"response": "restitution"}] = 2
     figure = surrogate_validation.plot(runs, analysis)
     assert words(panel(figure, "Number of contacts")) == ["no surrogate:\nconstant"]

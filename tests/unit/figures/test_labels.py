@@ -41,9 +41,7 @@ def test_setting_shows_values_in_one_unit():
     attrs = attributes("beam_yield_stress")
     stress = xr.DataArray([250e6, 345e6], dims="s", attrs=attrs, name="beam_yield_stress")
     assert labels.setting(stress, [0, 1]) == "yield stress of the beam = 250 and 345 MPa"
-
-
-def test_laws_and_rules_are_named_as_in_papers():
+    # laws and rules are named as in papers
     laws = xr.DataArray(["jackson_green"], dims="contact", name="contact")
     rules = xr.DataArray(["lobatto"], dims="rule", name="rule")
     assert labels.values(laws, [0]) == ["Jackson and Green"]
@@ -52,15 +50,11 @@ def test_laws_and_rules_are_named_as_in_papers():
     commas.attrs = attributes("contact")
     words = "contact law = “Hertz” and “Stronge, unloading after Wang et al.”"
     assert labels.setting(commas, [0, 1]) == words
-
-
-def test_one_value_says_what_it_counts():
+    # one value says what it counts
     assert labels.value(xr.DataArray([201], dims="nodes", name="nodes"), 0) == "201 nodes"
     assert labels.value(xr.DataArray([7], dims="run", name="run"), 0) == "run 7"
     assert labels.value(xr.DataArray([0.9], dims="courant", name="courant"), 0) == "0.9"
-
-
-def test_axis_of_a_pure_number_says_so():
+    # axis of a pure number says so
     assert labels.axis("restitution", "") == "Restitution (–)"
 
 
@@ -96,9 +90,7 @@ def test_value_and_symbol_agree(units, values, shown, symbol):
 def test_plastic_strain_is_in_percent():
     found = display(xr.DataArray([0.002], attrs={"units": "1"}, name="peak_plastic_strain"))
     assert (found.symbol, float(found(0.002))) == ("%", pytest.approx(0.2))
-
-
-def test_missing_values_do_not_choose_the_unit():
+    # missing values do not choose the unit
     assert display(xr.DataArray([np.nan, 2e3], attrs={"units": "N"})).symbol == "kN"
     assert display(xr.DataArray([np.nan], attrs={"units": "N"})).symbol == "N"
 

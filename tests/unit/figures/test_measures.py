@@ -26,17 +26,15 @@ def test_noise_is_told_from_numerical_error():
     assert found.numerically_lost.tolist() == [True, False, True, False]
 
 
-def test_numerical_error_opens_ranks_too():
-    values, margins = np.array([0.5, 0.3, 0.1]), np.full(3, 0.05)
-    assert Index(values, margins, np.zeros(3), 0.0).ranks == [(1, 1), (2, 2), (3, 3)]
-    found = Index(values, margins, np.array([0.1, 0.05, 0.0]), 0.0)
-    assert found.ranks == [(1, 2), (1, 2), (3, 3)]
-
-
 def test_ranks_are_open_where_intervals_overlap():
     found = _index([0.5, 0.3, 0.29, -0.7], [0.05, 0.05, 0.05, 0.05])
     assert found.ranks == [(2, 2), (3, 4), (3, 4), (1, 1)]
     assert _index([0.5, 0.1], [np.inf, 0.01]).ranks == [(1, 2), (1, 2)]
+    # numerical error opens ranks too
+    values, margins = np.array([0.5, 0.3, 0.1]), np.full(3, 0.05)
+    assert Index(values, margins, np.zeros(3), 0.0).ranks == [(1, 1), (2, 2), (3, 3)]
+    found = Index(values, margins, np.array([0.1, 0.05, 0.0]), 0.0)
+    assert found.ranks == [(1, 2), (1, 2), (3, 3)]
 
 
 def test_an_index_is_read_with_its_floor_from_the_dummy():
@@ -45,9 +43,7 @@ def test_an_index_is_read_with_its_floor_from_the_dummy():
     assert found.floor == pytest.approx(0.01 + 0.02)
     assert found.margins.tolist() == [0.03] * 9
     assert found.numerical.tolist() == [0.02] * 9
-
-
-def test_what_is_not_given_is_not_made_up():
+    # what is not given is not made up
     analysis = samples.indices(samples.sample(64))[["first_order"]]
     found = measures.index(analysis, "first_order", "peak_force")
     assert np.isinf(found.margins).all()

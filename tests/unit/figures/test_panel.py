@@ -27,9 +27,7 @@ def test_points_keep_uneven_errors_along_the_axis_they_were_given_for():
     np.testing.assert_array_equal(up.low, [4.0, 5.0])
     np.testing.assert_array_equal(up.high, [8.0, np.nan])
     assert (across.x.tolist(), across.low.tolist(), across.high.tolist()) == ([3.0], [2.5], [3.5])
-
-
-def test_bars_upwards_keep_their_errors_too():
+    # bars upwards keep their errors too
     figure, (ax,) = style.panels(1, columns=1, height=50)
     ax.bar([1.0, 2.0], [0.5, 0.75], yerr=0.25, label="share")
     (bars,) = data.drawn(figure)

@@ -31,9 +31,7 @@ def test_the_conditional_mean_of_a_known_law():
     assert middle.size == 20
     # the mean of x² over a bin of width 1/20 is its middle squared, plus a twelfth of 1/20²
     np.testing.assert_allclose(mean, middle**2 + 0.05**2 / 12, atol=4 * 0.1 / np.sqrt(2000))
-
-
-def test_runs_of_one_value_share_a_bin():
+    # runs of one value share a bin
     x = np.repeat([0.0, 1 / 3, 2 / 3, 1.0], 100)  # the levels of Morris
     middle, mean = conditional_mean(x, 2 * x)
     np.testing.assert_allclose(middle, [0.0, 1 / 3, 2 / 3, 1.0])
@@ -58,17 +56,13 @@ def test_noise_is_pale_and_the_dummy_a_line(study):
         assert [bar.get_alpha() for bar in bars.patches] == [None, None, 0.45, 0.45]
     floors = [line.get_segments()[0][0][0] for line in axes.collections if line.get_linestyle()]
     assert 0.03 in np.round(floors, 6)
-
-
-def test_bars_are_told_by_the_name_of_their_parameter(study):
+    # bars are told by the name of their parameter
     first = next(data.drawn(CATALOGUE["delta_indices"].plot(*study)))
     assert first.category[:2] == ["impact velocity", "yield stress of the beam"]
     delta = study[1]["delta"]
     largest_first = np.argsort(-delta.max("response").values)  # in any panel
     assert first.x.tolist() == delta.sel(response="peak_force").values[largest_first].tolist()
-
-
-def test_signed_coefficients_have_the_dummy_on_both_sides(study):
+    # signed coefficients have the dummy on both sides
     axes = panel(CATALOGUE["regression_indices"].plot(*study), "Peak force")
     ends = {round(float(s[0][0]), 6) for line in axes.collections for s in line.get_segments()}
     assert {-0.03, 0.03} <= ends
@@ -83,9 +77,7 @@ def test_morris_in_the_unit_of_the_response(study):
     stored = analysis.sel(response="peak_force")
     expected = 1e-3 * np.array([stored["morris_mu_star"], stored["morris_sigma"]]).T
     np.testing.assert_allclose([[p.x[0], p.y[0]] for p in points], expected)
-
-
-def test_a_group_alone_has_no_place_among_morris_spreads(study):
+    # a group alone has no place among morris spreads
     runs, analysis = study
     spread = analysis["morris_sigma"]
     figure = CATALOGUE["morris_plane"].plot(runs, analysis.assign(morris_sigma=np.nan * spread))
@@ -99,10 +91,7 @@ def test_convergence_of_the_indices_is_the_stored_one(study):
     for at, line in enumerate(axes.lines):
         np.testing.assert_allclose(np.asarray(line.get_ydata()), stored.isel(parameter=at))
     assert "up to all 32 base samples" in CATALOGUE["total_order_convergence"].caption(*study)
-
-
-def test_the_bands_reach_one_interval_to_either_side(study):
-    _, analysis = study
+    # the bands reach one interval to either side
     axes = panel(CATALOGUE["total_order_convergence"].plot(*study), "Peak force")
     stored = analysis.sel(response="peak_force")
     for at, band in enumerate(axes.collections):
@@ -120,6 +109,10 @@ def test_the_share_of_failures_rises_where_they_are(study):
     np.testing.assert_allclose(velocity.y, 9 * [0.0] + [100.0])
     assert stress.y.max() < 30.0
     assert "40 of 400 runs failed" in CATALOGUE["failure_shares"].caption(*study)
+    # without failures there is no map
+    runs = samples.sample(64)
+    assert not CATALOGUE["failure_map"].applies(runs, xr.Dataset())
+    assert not CATALOGUE["failure_shares"].applies(runs, xr.Dataset())
 
 
 def test_the_map_is_over_the_parameter_that_tells_failures(study):
@@ -177,12 +170,6 @@ def test_failures_are_shared_out_among_words(of_words):
     CATALOGUE["failure_map"].plot(of_words, xr.Dataset())
 
 
-def test_without_failures_there_is_no_map():
-    runs = samples.sample(64)
-    assert not CATALOGUE["failure_map"].applies(runs, xr.Dataset())
-    assert not CATALOGUE["failure_shares"].applies(runs, xr.Dataset())
-
-
 def test_alternative_texts_tell_what_is_largest(study):
     bars = alt(CATALOGUE["sobol_indices"].plot(*study))
     assert bars.startswith("Peak force: first order: largest for impact velocity (0.711); total")
@@ -192,16 +179,13 @@ def test_alternative_texts_tell_what_is_largest(study):
     assert lines.startswith("Peak force: highest of 4: impact velocity: ")
 
 
-def test_an_empty_panel_is_told(study):
-    runs, analysis = study
-    for name in ("first_order", "total_order"):
-        analysis[name].loc[{"response": "peak_force"}] = np.nan
-    assert "Peak force: undefined: usable." in alt(CATALOGUE["sobol_indices"].plot(runs, analysis))
-
-
 def test_each_order_cites_its_own_estimator(study):
     runs, analysis = study
     for name in ("first_order", "total_order"):
         analysis[name].attrs["estimator"] = f"source of {name}"
     caption = CATALOGUE["sobol_indices"].caption(runs, analysis)
     assert "first order: source of first_order; total order: source of total_order." in caption
+    # an empty panel is told
+    for name in ("first_order", "total_order"):
+        analysis[name].loc[{"response": "peak_force"}] = np.nan
+    assert "Peak force: undefined: usable." in alt(CATALOGUE["sobol_indices"].plot(runs, analysis))
