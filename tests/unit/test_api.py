@@ -21,7 +21,6 @@ from impactlab.methods import METHODS
 from impactlab.methods.distributions import ENTRIES, Entry, Fixed
 from impactlab.methods.sampling import Sampling
 from impactlab.model.parameters import PARAMETERS, flatten
-from impactlab.study import steps
 from impactlab.study.schema.readers import read_study
 from impactlab.validation.stated import plain
 
@@ -91,14 +90,6 @@ def test_commands_take_over_what_python_has_drawn(folder, monkeypatch):
     study.report()
     files = ["results/depth/runs.nc", "results/depth/analysis.nc"]
     assert here("report", *files) == 0
-
-
-def test_the_tidying_command_keeps_the_runs_of_a_study_without_a_file(folder):
-    small().run(workers=1)
-    (folder / "studies").mkdir()
-    small().to_yaml("studies/other.yaml")
-    with steps.removable(Path("studies"), Path("results")) as found:
-        assert found == {}
 
 
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)

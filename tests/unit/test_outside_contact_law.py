@@ -67,18 +67,14 @@ def test_it_is_no_failure(runs):
     assert not (runs.status.values & FAILED).any()
     assert not access.failed(runs).any()
     assert usable(runs).notnull().all()
-
-
-def test_the_report_names_the_law_and_its_range(runs):
+    # the report names the law and its range
     said = [text for text in cautions(runs) if "beyond the range" in text]
     assert len(said) == 1
     assert "1 of 3 runs" in said[0]
     assert "“kogut_etsion”" in said[0]
     assert "110 times" in said[0]
     assert not any("beyond" in text for text in cautions(runs.isel(run=[0, 2])))
-
-
-def test_the_dataset_states_the_range(runs):
+    # the dataset states the range
     assert "kogut_etsion: indentation up to 110 times" in runs.contact.attrs["holds_for"]
     assert "outside_contact_law" in runs.status.attrs["flag_meanings"].split()
 

@@ -49,14 +49,10 @@ def test_units_are_udunits_and_names_are_spelled_out(name):
 def test_no_name_is_used_twice():
     tables = (RESPONSES, HISTORIES, PROFILES, COORDINATES, PARAMETERS)
     assert sum(map(len, tables)) == len(TABLE)
-
-
-def test_an_unknown_variable_is_an_error():
+    # an unknown variable is an error
     with pytest.raises(KeyError, match="contact_farce"):
         attributes("contact_farce")
-
-
-def test_responses_name_the_flags_that_make_them_missing():
+    # responses name the flags that make them missing
     for name, entry in RESPONSES.items():
         named = set(attributes(name).get("missing_because", "").split())
         assert named == ({*WHOLE_RUN, entry.missing} if entry.missing else set())
@@ -112,9 +108,7 @@ def test_reasons_are_words():
         STATUS_FLAGS["diverged"][1],
         STATUS_FLAGS["in_contact_at_end"][1],
     ]
-
-
-def test_failures_and_marks_are_told_apart():
+    # failures and marks are told apart
     assert not set(FAILURES) & set(MARKS)
     assert reasons(BITS["outside_contact_law"], MARKS) == [MARKS["outside_contact_law"][1]]
     assert reasons(BITS["outside_contact_law"]) == []
@@ -134,15 +128,6 @@ def test_contact_says_where_its_laws_come_from_and_what_is_in_doubt():
     ]
     assert attrs["unconfirmed"] == f"mjg: {CONTACT_LAWS['mjg'].unconfirmed}"
     assert "flaws" not in described(xr.Dataset({"contact": "hertz"})).contact.attrs
-
-
-def test_a_run_survives_being_stored(tmp_path):
-    run = il.simulate(
-        il.paper_impact(20.0), il.Discretisation(nodes=11, points=3), duration=1e-4, samples=5
-    )
-    run.to_netcdf(tmp_path / "run.nc")
-    with xr.open_dataset(tmp_path / "run.nc") as stored:
-        xr.testing.assert_identical(stored.load(), run)
 
 
 def test_provenance_names_versions_time_and_machine():
@@ -186,8 +171,6 @@ def test_source_revision_is_the_commit_and_says_when_the_tree_differs(source_tre
 
 def test_source_revision_outside_a_checkout_is_the_release(source_tree):
     assert provenance()["source_revision"] == f"release {version('impactlab')}"
-
-
-def test_source_revision_of_a_broken_checkout_is_unknown(source_tree):
+    # source revision of a broken checkout is unknown
     (source_tree / ".git").mkdir()
     assert provenance()["source_revision"].startswith("unknown")

@@ -32,9 +32,7 @@ def test_help_loads_nothing_heavy(tmp_path):
     packages = loaded("--help", cwd=tmp_path)
     assert "typer" in packages
     assert packages.isdisjoint(HEAVY | {"numba", "numpy", "pydantic", "rich", "scipy"})
-
-
-def test_simulate_loads_no_more_than_it_needs(tmp_path):
+    # simulate loads no more than it needs
     packages = loaded(*ONE, cwd=tmp_path)
     assert "numba" in packages
     assert packages.isdisjoint(HEAVY)
@@ -78,9 +76,7 @@ def test_what_is_missing_is_named_with_its_reason(tmp_path):
     told = " ".join(told.split())
     assert "the first contact does: contact_duration." in told
     assert "--duration = 50 µs is too short for" in told
-
-
-def test_the_default_duration_gives_every_response(tmp_path):
+    # the default duration gives every response
     told = impactlab("simulate", "--nodes", 51, cwd=tmp_path).stdout
     assert "restitution" in told
     assert "missing" not in told.lower()

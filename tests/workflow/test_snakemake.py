@@ -65,16 +65,12 @@ def test_every_product_is_there(folder):
     assert all(f"{study}/report.html" in index for study in ("smoke", "checks", "bad"))
     assert (results / "checks" / "passed").exists()
     assert not (results / "smoke" / "passed").exists()
-
-
-def test_a_line_per_step_names_its_study_and_the_time_left(folder):
+    # a line per step names its study and the time left
     lines = (folder / "printed").read_text().splitlines()
     assert {"smoke: figures", "checks: figures"} <= {line.split("; ")[-1] for line in lines}
     index = r"\d+ of \d+ done, about \d\.\d min left; all studies: index"
     assert any(re.fullmatch(index, line) for line in lines)
-
-
-def test_failed_checks_come_after_the_report(folder):
+    # failed checks come after the report
     results = folder / "results" / "bad"
     assert "half_space: 1 of 1 comparisons" in (folder / "printed").read_text()
     assert "Verification failed" in (results / "report.html").read_text()

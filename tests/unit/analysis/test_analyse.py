@@ -55,6 +55,15 @@ def test_a_grid_study_gets_both_axes(discretisation):
     assert found["points_error"].dims == ("response", "rule", "nodes", "points")
     assert "first_order" not in found
     assert found.attrs == discretisation.attrs
+    # coordinates keep their attributes
+    found = analyse(discretisation)
+    for name in ("nodes", "points", "rule", "beam_span"):
+        assert found[name].attrs == discretisation[name].attrs != {}
+    assert found["response"].attrs["long_name"]
+    # only the wanted analyses are made
+    found = analyse(discretisation.assign_attrs(analyses=["convergence_in_points"]))
+    assert "points_verdict" in found
+    assert "nodes_verdict" not in found
 
 
 def test_a_sample_study_gets_indices(sample):
@@ -69,6 +78,16 @@ def test_a_study_without_either_gets_its_responses_alone(grid_runs):
     found = analyse(runs)
     assert found["response"].values.tolist() == ["peak_force"]
     assert not found.data_vars
+    # names a response that the runs do not hold
+    runs = grid_runs({"velocity": [1.0, 2.0]}, peak_force=lambda velocity: velocity)
+    runs.attrs["responses"] = ["peak_force", "impulse"]
+    with pytest.raises(ValueError, match="hold no impulse"):
+        analyse(runs)
+    # histories are left alone
+    runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: nodes**-2.0)
+    runs["contact_force"] = (("nodes", "time"), np.ones((3, 4)))
+    found: Any = analyse(runs)
+    assert "time" not in found.dims
 
 
 def test_a_new_analysis_is_one_line(discretisation, sample, monkeypatch):
@@ -126,33 +145,6 @@ def test_every_variable_is_described(discretisation, sample):
                 assert [line.partition(": ")[0] for line in described] == flags
             elif "flag_masks" not in variable.attrs and name not in IN_UNITS_OF_RESPONSES:
                 assert variable.attrs["units"] == "1"
-
-
-def test_coordinates_keep_their_attributes(discretisation):
-    found = analyse(discretisation)
-    for name in ("nodes", "points", "rule", "beam_span"):
-        assert found[name].attrs == discretisation[name].attrs != {}
-    assert found["response"].attrs["long_name"]
-
-
-def test_names_a_response_that_the_runs_do_not_hold(grid_runs):
-    runs = grid_runs({"velocity": [1.0, 2.0]}, peak_force=lambda velocity: velocity)
-    runs.attrs["responses"] = ["peak_force", "impulse"]
-    with pytest.raises(ValueError, match="hold no impulse"):
-        analyse(runs)
-
-
-def test_histories_are_left_alone(grid_runs):
-    runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: nodes**-2.0)
-    runs["contact_force"] = (("nodes", "time"), np.ones((3, 4)))
-    found: Any = analyse(runs)
-    assert "time" not in found.dims
-
-
-def test_only_the_wanted_analyses_are_made(discretisation):
-    found = analyse(discretisation.assign_attrs(analyses=["convergence_in_points"]))
-    assert "points_verdict" in found
-    assert "nodes_verdict" not in found
 
 
 def test_a_sample_is_analysed_one_response_at_a_time(sample_runs, tmp_path, monkeypatch):

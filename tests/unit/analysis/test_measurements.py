@@ -79,9 +79,7 @@ def test_a_file_is_read_in_si_with_standard_uncertainties():
     assert force.conditions == {"beam_depth": 0.0278, "velocity": 2.0, "contact": "mjg"}
     assert (restitution.value, restitution.standard_uncertainty) == (0.5, pytest.approx(0.02))
     assert restitution.conditions == {"beam_depth": 0.0278, "velocity": 1.0}
-
-
-def test_the_committed_files_are_sound_and_name_their_source():
+    # the committed files are sound and name their source
     for path in (ROOT / "measurements").glob("*.yaml"):
         assert all(len(one.source) > 40 for one in read_measurements(path))
 
@@ -145,29 +143,6 @@ def test_both_uncertainties_are_added_in_squares(study, side):
         assert found is verdict
 
 
-def test_what_is_not_judged_says_why(study):
-    runs, analysis = study
-    force = {"velocity": 2.0, "contact": "stronge"}
-    other, missing = Agreement.OTHER_IMPACT, Agreement.NOT_JUDGED
-
-    def verdict(given, words, on=study, **conditions):
-        ((found, _, why),) = judged(on, 2e4, **conditions)
-        assert found is given
-        assert words in why
-
-    verdict(other, "0.0278", **force, beam_depth=0.03)
-    verdict(other, "has no beam_span", **force, beam_span=0.03)
-    verdict(missing, "no run at velocity = 2.5", **force | {"velocity": 2.5})
-    verdict(missing, "leaves out the response impulse", quantity="impulse", **force)
-    verdict(missing, "bounds the numerical error", on=(runs, xr.Dataset()), **force)
-    verdict(missing, "state velocity", contact="stronge")
-    failed = runs.copy(deep=True)
-    failed["status"][1, 1, 2] = 1
-    verdict(missing, "diverged", on=(failed, analysis), **force)
-    cases = [case for _, case, _ in judged(study, 2e4, velocity=2.0)]
-    assert cases == ["hertz", "stronge"], "one row per law, where none is stated"
-
-
 @pytest.mark.parametrize(("value", "verdict"), [(2.2e4, 0), (2.3e4, 1), (np.inf, 2)])
 def test_pilot_runs_of_auto_bound_the_error_of_a_grid(study, value, verdict):
     grid = {"nodes": 201, "points": 5, "courant": 0.5}
@@ -194,6 +169,27 @@ def test_a_measured_zero_shows_the_difference_in_its_unit(study):
     ((row,),) = (table.rows for table in sections(found)[0].tables)
     assert row[-2].text == "+22 kN"
     assert "inf" not in line
+    # what is not judged says why
+    runs, analysis = study
+    force = {"velocity": 2.0, "contact": "stronge"}
+    other, missing = Agreement.OTHER_IMPACT, Agreement.NOT_JUDGED
+
+    def verdict(given, words, on=study, **conditions):
+        ((found, _, why),) = judged(on, 2e4, **conditions)
+        assert found is given
+        assert words in why
+
+    verdict(other, "0.0278", **force, beam_depth=0.03)
+    verdict(other, "has no beam_span", **force, beam_span=0.03)
+    verdict(missing, "no run at velocity = 2.5", **force | {"velocity": 2.5})
+    verdict(missing, "leaves out the response impulse", quantity="impulse", **force)
+    verdict(missing, "bounds the numerical error", on=(runs, xr.Dataset()), **force)
+    verdict(missing, "state velocity", contact="stronge")
+    failed = runs.copy(deep=True)
+    failed["status"][1, 1, 2] = 1
+    verdict(missing, "diverged", on=(failed, analysis), **force)
+    cases = [case for _, case, _ in judged(study, 2e4, velocity=2.0)]
+    assert cases == ["hertz", "stronge"], "one row per law, where none is stated"
 
 
 def test_report_and_figures_show_them(study):

@@ -160,19 +160,14 @@ def test_an_error_common_to_all_runs_moves_no_index():
     found = measured(refine_cases(runs, solve))
     assert float(found["first_order"].max()) < 1e-12
     assert float(found["total_order"].max()) < 1e-12
-
-
-def test_one_more_coarse_grid_tells_that_the_changes_fall():
+    # one more coarse grid tells that the changes fall
     solve = solver(order=2.0)
     refinement = refine_cases(sample_of(solve), solve)
     with_it = measured(refinement)["total_order"]
     without = measured(refinement.sel(grid=["used", "finer", "more_points"]))["total_order"]
     change = abs(measured(refinement)["total_order_change"])
     np.testing.assert_allclose(without - with_it, (3.0 - 1.25) * change, rtol=1e-9)
-
-
-def test_points_count_too():
-    """Nodes change nothing here, for the runs of all grids but one are those of the used grid."""
+    # Nodes change nothing here, for the runs of all grids but one are those of the used grid.
     solve = solver()
     refinement = refine_cases(sample_of(solve), solve)
     used = refinement["peak_force"].sel(grid="used", drop=True)
@@ -212,9 +207,7 @@ def test_it_takes_the_place_of_the_bound_where_it_is_known():
     left = numerical(runs, analysis_of([0.6, 0.3, 0.1]), None, refine_cases(runs, failing))
     assert left["numerical_from"].item() == 2
     np.testing.assert_array_equal(left["total_order_numerical"].values[0], [0.6, 0.7, 0.9])
-
-
-def test_a_refinement_of_other_runs_is_refused():
+    # a refinement of other runs is refused
     runs = sample_of(solver())
     other = refine_cases(sample_of(solver(common=1.0)), solver(common=1.0))
     with pytest.raises(ValueError, match=r"impactlab refine results/some/runs.nc"):

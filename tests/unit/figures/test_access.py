@@ -51,7 +51,7 @@ def test_status_overrules_a_number(velocity_study):
     runs["status"][0, 0] = STATUS_FLAGS["diverged"][0]
     assert np.isnan(usable(runs, "contact_force")[0, 0]).all()
     # a gap without a status is not silent
-    runs["peak_force"][0, 0] = np.nan
+    runs["peak_force"][1, 0] = np.nan
     assert access.UNEXPLAINED in access.missing_note(runs, ["peak_force"])
     assert access.UNEXPLAINED in access.missing_note(runs.drop_vars("status"), ["peak_force"])
 

@@ -45,9 +45,7 @@ def test_a_new_folder_takes_away_those_unused_for_a_month(root):
     assert set(root.iterdir()) == {young, new}
     assert not old.exists()
     assert (young / "code.kernel").exists()
-
-
-def test_a_folder_in_use_is_not_unused(root):
+    # a folder in use is not unused
     folder = left_alone(jit.cache_folder(SOURCES), days=31)
     assert jit.cache_folder(SOURCES) == folder
     jit.cache_folder(OTHERS)

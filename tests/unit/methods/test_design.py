@@ -181,9 +181,7 @@ def test_a_design_drawn_in_another_way_is_refused(sampled):
         ValueError, match=r"'some' was drawn by another version .*\(gravity differs"
     ):
         doubled(other)
-
-
-def test_only_sobols_sample_can_be_doubled(sampled):
+    # only sobols sample can be doubled
     with pytest.raises(ValueError, match="only a sample with method: sobol can be extended"):
         doubled(sampled("delta", samples=64))
 

@@ -52,9 +52,7 @@ def test_bounds_are_kept_to_the_last_digit():
     given = {"distribution": "uniform", "low": 0.3, "high": 0.9}
     assert 0.3 + (0.9 - 0.3) != 0.9  # what the linear formula makes of it
     assert distribution_of(given).quantile([0.0, 1.0]).tolist() == [0.3, 0.9]
-
-
-def test_arguments_leave_other_attributes_out():
+    # arguments leave other attributes out
     given = {"distribution": "uniform", "low": np.float64(1.0), "high": 2, "units": "m"}
     assert distribution_of(given).arguments() == {
         "distribution": "uniform",

@@ -34,6 +34,9 @@ def test_zero_is_not_negative_and_not_positive():
         positive("Owner", "field", 0)
     with pytest.raises(ValueError, match=r"^Impact\.gravity = -1\.0: must not be negative$"):
         replace(il.paper_impact(), gravity=-1)
+    # a truth is no count
+    with pytest.raises(ValueError, match=r"^Owner\.field = True: must be a whole number"):
+        integer("Owner", "field", True, 1)
 
 
 @pytest.mark.parametrize("value", [5, 5.0, np.int64(5), np.float64(5)], ids=repr)
@@ -48,11 +51,6 @@ def test_other_numbers_are_refused(value):
     message = r"^Owner\.field = .*: must be a whole number of at least 5$"
     with pytest.raises(ValueError, match=message):
         integer("Owner", "field", value, 5)
-
-
-def test_a_truth_is_no_count():
-    with pytest.raises(ValueError, match=r"^Owner\.field = True: must be a whole number"):
-        integer("Owner", "field", True, 1)
 
 
 def test_a_name_is_one_of_the_choices():
@@ -112,35 +110,26 @@ def test_anything_else_is_no_column(values):
         column(values)
 
 
-def test_a_number_among_words_is_a_word():
+def test_columns_in_fields_are_checked_run_by_run_and_other_arrays_refused():
+    """A user's array in a field is a mistake, and refused as before."""
+    with pytest.raises(ValueError, match=r"^Beam\.span = array.*: must be a finite number$"):
+        replace(il.paper_impact().beam, span=np.array([1.0, 2.0]))
+    # a number among words is a word
     with pytest.raises(ValueError, match=r"^Impact\.velocity"):
         replace(il.paper_impact(), velocity=column(["1.0", 2.0]))
-
-
-def test_a_rule_holds_for_all_of_a_column():
+    # a rule holds for all of a column
     sphere = il.paper_impact().sphere
     with pytest.raises(ValueError, match=r"^Sphere\.radius = .*: must be above zero$"):
         replace(sphere, radius=column([1.0, -1.0]))
     replace(sphere, radius=column([1.0, 2.0]))
     replace(sphere, radius=column([]))
-
-
-def test_other_arrays_are_no_numbers():
-    """A user's array in a field is a mistake, and refused as before."""
-    with pytest.raises(ValueError, match=r"^Beam\.span = array.*: must be a finite number$"):
-        replace(il.paper_impact().beam, span=np.array([1.0, 2.0]))
-
-
-def test_fields_are_compared_run_by_run():
+    # fields are compared run by run
     beam = il.paper_impact().beam
     deep = replace(beam, span=column([0.5, 2.0]), depth=column([0.4, 1.0]))
     assert deep.depth.tolist() == [0.4, 1.0]
     with pytest.raises(ValueError, match=r"^Beam\.depth = .*: must be below the span"):
         replace(beam, span=column([0.5, 2.0]), depth=column([0.6, 1.0]))
-
-
-def test_the_mass_is_that_of_each_sphere():
-    sphere = il.paper_impact().sphere
+    # the mass is that of each sphere
     radii = np.random.default_rng(1).uniform(0.001, 0.1, 1000).tolist()
     masses = replace(sphere, radius=column(radii)).total_mass
     assert masses.tolist() == [replace(sphere, radius=radius).total_mass for radius in radii]

@@ -37,9 +37,7 @@ def test_steps_of_bending_and_of_a_bar_wave_by_hand():
     assert wave == pytest.approx(0.5 * 201 * 1e-3 / (0.5 * dx / speed))
     timoshenko = node_steps(PAPER | {"beam_model": BEAM_MODELS.index("timoshenko")})
     assert timoshenko == pytest.approx(2.0 * wave)
-
-
-def test_columns_are_many_runs_at_once():
+    # columns are many runs at once
     columns = {name: np.array([value, value]) for name, value in PAPER.items()}
     columns["courant"] = np.array([0.5, 0.25])
     one, other = node_steps(columns)

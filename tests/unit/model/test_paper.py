@@ -26,15 +26,11 @@ def test_beam_of_q345():
     assert steel.yield_stress == 345e6
     assert steel.isotropic_hardening_modulus == 0  # elastic-perfectly plastic
     assert steel.kinematic_hardening_modulus == 0
-
-
-def test_beam_weighs_what_its_volume_does_and_not_the_printed_mass():
+    # beam weighs what its volume does and not the printed mass
     mass = IMPACT.beam.mass_per_length * IMPACT.beam.span
     assert mass == pytest.approx(10.148, abs=5e-4)
     assert IMPACT.beam.mass_per_length * 0.84 == pytest.approx(10.929, abs=5e-4)
-
-
-def test_bending_stiffness_is_that_of_the_rectangle():
+    # bending stiffness is that of the rectangle
     assert IMPACT.beam.bending_stiffness == pytest.approx(210e9 * 0.06 * 0.0278**3 / 12, rel=1e-14)
 
 
@@ -42,8 +38,6 @@ def test_impact_at_0_99_m_per_s_under_stronge_with_gravity():
     assert (IMPACT.velocity, IMPACT.contact, IMPACT.gravity) == (0.99, "stronge", 9.81)
     assert il.paper_impact(20.0, "hertz").velocity == 20.0
     assert il.paper_impact(20.0, "hertz").contact == "hertz"
-
-
-def test_a_stated_mass_goes_before_density():
+    # a stated mass goes before density
     sphere = il.Sphere(radius=0.035, material=IMPACT.sphere.material, mass=10.0)
     assert sphere.total_mass == 10.0

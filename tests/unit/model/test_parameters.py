@@ -60,9 +60,7 @@ def test_the_table_has_every_field_once():
     unused = {("impact", "sphere", "material", name.removeprefix("beam_")) for name in HARDENING}
     unused |= {("impact", "beam", "shape")}  # of which there is one
     assert sorted(entry.path for entry in PARAMETERS.values()) == sorted(set(every) - unused)
-
-
-def test_flatten_gives_the_papers_values():
+    # flatten gives the papers values
     values = flatten(*BASE)
     assert values["velocity"] == 0.99
     assert values["beam_depth"] == 0.0278
@@ -86,14 +84,9 @@ def test_all_values_at_once_come_back():
     back = flatten(*with_values(*changed, flatten(*BASE)))
     stated = {name: STATED[name] for name in TOGETHER if name in STATED}
     assert back == flatten(*BASE) | stated  # what was stated stays stated
-
-
-def test_nothing_changes_nothing():
+    # nothing changes nothing
     assert with_values(*BASE, {}) == BASE
-
-
-def test_values_are_checked_together():
-    """Neither alone would pass: the depth above the old span, the yield stress above the old E."""
+    # Neither alone would pass: the depth above the old span, the yield stress above the old E.
     impact, _ = with_values(*BASE, {"beam_depth": 1.0, "beam_span": 5.0})
     assert (impact.beam.depth, impact.beam.span) == (1.0, 5.0)
     impact, _ = with_values(*BASE, {"beam_yield_stress": 3e11, "beam_youngs_modulus": 4e11})

@@ -155,6 +155,8 @@ def test_every_unit_that_a_study_can_need_has_words_and_a_true_example():
     assert needed <= KINDS.keys()
     for units, (_, example) in KINDS.items():
         assert si(example, units) > 0
+    # few digits need no power of ten
+    assert engineering(154.0, "N", digits=2) == "150 N"
 
 
 @pytest.mark.parametrize(
@@ -201,10 +203,6 @@ def test_a_long_duration_states_its_unit(value):
         duration(value)
     assert duration(0.05) == 0.05
     assert duration("1 s") == 1.0
-
-
-def test_few_digits_need_no_power_of_ten():
-    assert engineering(154.0, "N", digits=2) == "150 N"
 
 
 @pytest.mark.parametrize(

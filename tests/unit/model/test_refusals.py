@@ -133,13 +133,9 @@ def test_an_array_is_no_name():
     for contact in (np.array(["hertz", "stronge"]), np.array("hertz")):
         with pytest.raises(ValueError, match=r"^Impact\.contact = .*: must be one of"):
             replace(IMPACT, contact=contact)
-
-
-def test_fields_go_by_name():
+    # fields go by name
     with pytest.raises(TypeError):
         il.Sphere(0.035, IMPACT.sphere.material)
-
-
-def test_the_size_of_solid_elements_is_said_once():
+    # the size of solid elements is said once
     with pytest.raises(ValueError, match=r"elements_per_radius = 2: element_size says it already"):
         il.Discretisation(element_size=1e-3, elements_per_radius=2)

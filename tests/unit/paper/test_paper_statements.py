@@ -59,12 +59,20 @@ def test_duration_falls(fig08):
     (partly,) = velocity.duration_falls.judge(fig08(rise=0.5))
     assert partly.verdict == READING
     assert "up to 10 m/s and rises" in partly.why
-
-
-def test_a_fall_within_the_uncertainty_does_not_count(fig08):
+    # a fall within the uncertainty does not count
     (flat,) = velocity.duration_falls.judge(fig08(power=-1e-7))
     assert flat.verdict == FAILS
     assert "does not fall by more than its uncertainty" in flat.why
+    # two grids give no uncertainty
+    data = {"fig08": fig08()["fig08"].isel(nodes=slice(2))}
+    assert verdicts(velocity.duration_falls.judge(data)) == [UNKNOWN]
+    # a failed run is reported and not judged
+    data = fig08()
+    where = {"velocity": 5.0, "beam_model": "euler_bernoulli", "nodes": 601}
+    data["fig08"]["status"].loc[where] = outputs.DIVERGED
+    (found,) = velocity.duration_falls.judge(data)
+    assert found.verdict == UNKNOWN
+    assert "at 5 m/s 1 of 3 runs lack it: the run diverged" in found.why
 
 
 def test_above_spring_mass(fig08):
@@ -140,9 +148,7 @@ def test_plastic_strain_as_in_the_paper(fig10):
     above = verdicts(plastic_strain.above_limit_at_15.judge(data))
     assert above == [READING] * 4 + [FAILS, READING] + [READING] * 6
     assert verdicts(plastic_strain.plasticity_begins.judge(data)) == [HOLDS, READING]
-
-
-def test_plastic_strain_other_than_in_the_paper(fig10):
+    # plastic strain other than in the paper
     assert verdicts(plastic_strain.elastic_to_5.judge(fig10(begins=3.0))) == [FAILS, FAILS]
     high = fig10(slope=1.2e-3)
     assert verdicts(plastic_strain.below_limit_at_10.judge(high)) == [FAILS] * 8
@@ -278,22 +284,25 @@ def test_nodes(fig06):
     assert verdicts(resolution.nodes_suffice.judge(fig06(0.006))) == [HOLDS] * 4
     assert verdicts(resolution.nodes_suffice.judge(fig06(0.0005))) == [READING] * 4
     assert verdicts(resolution.nodes_suffice.judge(fig06(0.02))) == [FAILS] * 4
-
-
-def test_points(fig06):
+    # points
     good = verdicts(resolution.points_suffice.judge(fig06(0.0)))
     assert good == [HOLDS] * 4 + [READING] * 12
     assert verdicts(resolution.points_suffice.judge(fig06(0.0, bad_points=2))) == (
         [FAILS] * 4 + [READING] * 8 + [FAILS] * 4
     )
-
-
-def test_two_grids_can_fail_but_not_hold(fig06):
-    """Half of the change between two grids is the least that the coarser one errs."""
+    # Half of the change between two grids is the least that the coarser one errs.
     for share, expected in ((0.0005, UNKNOWN), (0.2, FAILS)):
         runs = fig06(share)["fig06_nodes"].sel(nodes=[601, 1201])
         found = resolution.nodes_suffice.judge({"fig06_nodes": runs})
         assert verdicts(found) == [expected] * 4
+    # one inaccurate response is enough to fail
+    data = fig06(0.0005)
+    where = {"velocity": 15.0, "points": 21, "nodes": 601}
+    data["fig06_nodes"]["contact_duration"].loc[where] *= 1.05
+    found = {entry.case: entry for entry in resolution.nodes_suffice.judge(data)}
+    assert found["15 m/s, force and motion"].verdict == FAILS
+    assert "contact duration" in found["15 m/s, force and motion"].why
+    assert found["15 m/s, plastic strain (PEEQ)"].verdict == READING
 
 
 def test_lobatto_as_the_reason(fig06):
@@ -305,25 +314,6 @@ def test_lobatto_as_the_reason(fig06):
     assert found == [READING, READING, FAILS, FAILS]
 
 
-def test_one_inaccurate_response_is_enough_to_fail(fig06):
-    data = fig06(0.0005)
-    where = {"velocity": 15.0, "points": 21, "nodes": 601}
-    data["fig06_nodes"]["contact_duration"].loc[where] *= 1.05
-    found = {entry.case: entry for entry in resolution.nodes_suffice.judge(data)}
-    assert found["15 m/s, force and motion"].verdict == FAILS
-    assert "contact duration" in found["15 m/s, force and motion"].why
-    assert found["15 m/s, plastic strain (PEEQ)"].verdict == READING
-
-
-def test_a_failed_run_is_reported_and_not_judged(fig08):
-    data = fig08()
-    where = {"velocity": 5.0, "beam_model": "euler_bernoulli", "nodes": 601}
-    data["fig08"]["status"].loc[where] = outputs.DIVERGED
-    (found,) = velocity.duration_falls.judge(data)
-    assert found.verdict == UNKNOWN
-    assert "at 5 m/s 1 of 3 runs lack it: the run diverged" in found.why
-
-
 def test_without_studies_only_closed_forms_are_judged():
     for statement, found in judge_all({}):
         if statement.studies:
@@ -332,12 +322,5 @@ def test_without_studies_only_closed_forms_are_judged():
             continue
         assert statement.kind is not Subject.STATEMENT, "only misprints are judged by closed forms"
         assert UNKNOWN not in verdicts(found), statement.name
-
-
-def test_names_are_unique():
+    # names are unique
     assert len({statement.name for statement in STATEMENTS}) == len(STATEMENTS)
-
-
-def test_two_grids_give_no_uncertainty(fig08):
-    data = {"fig08": fig08()["fig08"].isel(nodes=slice(2))}
-    assert verdicts(velocity.duration_falls.judge(data)) == [UNKNOWN]

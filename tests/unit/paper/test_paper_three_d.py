@@ -92,9 +92,7 @@ def test_what_the_uncertainty_encloses_is_compatible(witness):
         verdicts(three_d.duration_of_witness.judge(witness(gap=0.01, error=0.02))) == [READING] * 2
     )
     assert verdicts(three_d.duration_of_witness.judge(witness(gap=0.01))) == [FAILS] * 2
-
-
-def test_finer_meshes_are_used_at_the_papers_velocity(witness):
+    # finer meshes are used at the papers velocity
     data = witness(gap=0.01, error=0.02)
     data["witness_mesh"] = mesh_study(witness(gap=0.01, error=1e-4))
     assert verdicts(three_d.duration_of_witness.judge(data)) == [FAILS, READING]

@@ -29,17 +29,14 @@ def test_a_verdict_of_its_own_takes_the_place(discretisation_study):
     assert beside(*discretisation_study, "peak_plastic_strain") == ""
 
 
-def test_energy_imbalance_and_restitution_above_one(material_study):
+def test_energy_imbalance_and_restitution_above_one(material_study, report):
     runs, analysis = material_study
     assert beside(runs, analysis, "energy_error") == beside(runs, analysis, "restitution") == ""
     runs["energy_error"][0, 0, :] = 0.02
     runs["restitution"][1, 0, 0] = 1.05
     assert beside(runs, analysis, "energy_error") == "above 0.001 in 2 runs"
     assert beside(runs, analysis, "restitution") == "above 1 in 1 run"
-
-
-def test_a_doubt_stands_beside_its_number_in_the_answer_and_in_the_table(report, material_study):
-    runs, analysis = material_study
+    # a doubt stands beside its number in the answer and in the table
     runs["restitution"][1, 0, 0] = 1.05
     page = report(runs, analysis)
     assert re.search(r"Doubtful: [^.]*restitution \(above 1 in 1 run\)", page.text)
@@ -58,7 +55,17 @@ def test_a_run_that_lacks_a_response_has_not_failed(velocity_study, failing):
     assert endings(failing(runs, {"velocity": 5})) == "2 failed, 1 without an answer"
 
 
-def test_runs_whose_contact_law_created_energy_are_counted(material_study):
+def test_a_study_without_trouble_has_no_caution(material_study):
+    runs, _ = material_study
+    assert list(cautions(runs)) == []
+    # inputs outside the data of the contact law stand beside its responses
+    runs, analysis = material_study
+    assert beside(runs, analysis, "peak_force") == ""
+    runs["remarks"] = xr.zeros_like(runs["status"])
+    runs["remarks"][0, :, 0] = WARNINGS["hardening_outside_data"][0]
+    assert "outside the contact law's data in 3 runs" in beside(runs, analysis, "peak_force")
+    assert _said(cautions(runs), "In 3 of 24 runs the beam's hardening modulus is above")
+    # runs whose contact law created energy are counted
     runs, _ = material_study
     words = "the contact law created energy"
     assert not _said(cautions(runs), words)
@@ -68,26 +75,24 @@ def test_runs_whose_contact_law_created_energy_are_counted(material_study):
     assert _said(cautions(runs), f"In 3 of 24 runs {words}")
 
 
-def test_inputs_outside_the_data_of_the_contact_law_stand_beside_its_responses(material_study):
-    runs, analysis = material_study
-    assert beside(runs, analysis, "peak_force") == ""
-    runs["remarks"] = xr.zeros_like(runs["status"])
-    runs["remarks"][0, :, 0] = WARNINGS["hardening_outside_data"][0]
-    assert "outside the contact law's data in 3 runs" in beside(runs, analysis, "peak_force")
-    assert _said(cautions(runs), "In 3 of 24 runs the beam's hardening modulus is above")
-
-
-def test_a_study_without_trouble_has_no_caution(material_study):
-    runs, _ = material_study
-    assert list(cautions(runs)) == []
-
-
 def test_notes_on_the_contact_law(velocity_study):
     runs, _ = velocity_study
     words = "creates energy"
     assert _said(notes(runs), words)
     assert not _said(notes(runs.sel(contact=["hertz"])), words)
     assert _said(notes(runs.sel(contact="stronge")), words)
+    # notes on responses
+    kept = runs.sel(contact=["hertz"])
+    assert _said(notes(kept[["contact_duration"]]), "that of the first contact")
+    assert _said(notes(kept[["restitution"]]), "last contact within the simulated time")
+    assert _said(notes(kept[["peak_plastic_strain"]]), "does not converge")
+    assert list(notes(kept[["peak_force"]])) == []
+    # note on the modal scheme
+    words = "The modal scheme"
+    assert not _said(notes(runs.assign_coords(scheme="leapfrog")), words)
+    assert _said(notes(runs.assign_coords(scheme="modal")), words)
+    varied = runs.expand_dims(scheme=["leapfrog", "modal"])
+    assert _said(notes(varied), words)
 
 
 def test_notes_say_what_of_a_law_is_not_confirmed(laws_study):
@@ -101,31 +106,11 @@ def test_notes_say_what_of_a_law_is_not_confirmed(laws_study):
     assert not _said(notes(runs.sel(contact=["hertz", "stronge"])), "not confirmed")
 
 
-def test_notes_on_responses(velocity_study):
-    runs, _ = velocity_study
-    kept = runs.sel(contact=["hertz"])
-    assert _said(notes(kept[["contact_duration"]]), "that of the first contact")
-    assert _said(notes(kept[["restitution"]]), "last contact within the simulated time")
-    assert _said(notes(kept[["peak_plastic_strain"]]), "does not converge")
-    assert list(notes(kept[["peak_force"]])) == []
-
-
 def test_notes_on_few_lobatto_points(discretisation_study):
     runs, _ = discretisation_study
     words = "Few Lobatto points"
     assert _said(notes(runs), words)
     assert not _said(notes(runs.sel(points=[5, 9])), words)
     assert not _said(notes(runs.sel(rule=["layers"])), words)
-
-
-def test_note_on_the_modal_scheme(velocity_study):
-    runs, _ = velocity_study
-    words = "The modal scheme"
-    assert not _said(notes(runs.assign_coords(scheme="leapfrog")), words)
-    assert _said(notes(runs.assign_coords(scheme="modal")), words)
-    varied = runs.expand_dims(scheme=["leapfrog", "modal"])
-    assert _said(notes(varied), words)
-
-
-def test_no_note_applies_to_nothing():
+    # no note applies to nothing
     assert list(notes(xr.Dataset())) == []

@@ -95,9 +95,7 @@ def test_the_data_of_a_figure_are_thinned_evenly(tmp_path):
     assert table.head == ["Panel", "Curve", "Time (ms)", "Force (kN)"]
     assert [getattr(cell, "text", cell) for cell in table.rows[1]] == ["Force", "one", "5", "25"]
     assert [getattr(cell, "text", cell) for cell in table.rows[40]] == ["Force", "two", "0", "0"]
-
-
-def test_the_data_of_named_bars_are_all_told(tmp_path):
+    # the data of named bars are all told
     lines = ["panel,curve,x_label,y_label,category,x,y"]
     lines += [f"Force,first order,Share (–),,parameter {at},0.5,{at}" for at in range(100)]
     (tmp_path / "figure.csv").write_text("\n".join(lines))
@@ -121,9 +119,7 @@ def test_links_every_report(results, page):
     assert "6 runs (grid), none failed" in found.text
     with open_stored([results / "velocity" / name for name in RUNS.files]) as (_, datasets):
         assert answers(*datasets)[0] in found.text
-
-
-def test_addresses_are_relative_and_exist(results, page):
+    # addresses are relative and exist
     home = results.parent / "elsewhere" / "index.html"
     found = _index(results, page, home)
     addresses = [attrs["src"] for attrs in found.named("img")]
@@ -131,6 +127,12 @@ def test_addresses_are_relative_and_exist(results, page):
     assert len(addresses) == 2
     assert all((home.parent / unquote(address)).is_file() for address in addresses)
     assert found.named("img")[0]["alt"] == "Effect of the varied parameters"
+    # folders without a report are left out
+    (results / "half").mkdir()
+    (results / "half" / "runs.nc").touch()
+    (results / "other").mkdir()
+    (results / "other" / "report.html").touch()
+    assert len(_index(results, page).named("li")) == 1
 
 
 def _rewrite(runs, path):
@@ -160,14 +162,6 @@ def test_markup_and_odd_names_do_no_harm(results, page):
     assert "<i>T</i>" in found.text
     link = next(a["href"] for a in found.named("a") if not a["href"].startswith("#"))
     assert (results / unquote(link)).is_file()
-
-
-def test_folders_without_a_report_are_left_out(results, page):
-    (results / "half").mkdir()
-    (results / "half" / "runs.nc").touch()
-    (results / "other").mkdir()
-    (results / "other" / "report.html").touch()
-    assert len(_index(results, page).named("li")) == 1
 
 
 def test_an_empty_folder_says_what_to_do(tmp_path, page):

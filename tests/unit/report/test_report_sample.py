@@ -60,6 +60,18 @@ def test_sections_stand_in_the_order_of_sensobol(report, study):
         "notes",
         "provenance",
     ]
+    # the verdict stands beside every number
+    page = report(*study)
+    starts = ("Sobol", "Ranks", "Delta", "PAWN", "Regression", "Elementary", "The surrogate on")
+    tables = [rows for caption, rows in page.tables.items() if caption.startswith(starts)]
+    assert len(tables) == 11
+    for rows in tables:
+        assert rows[2][0] == "Remote plastic strainmostly constant"
+    # a design that is no sample of the distribution says so
+    runs, analysis = study
+    page = report(runs.assign_attrs(method="morris"), analysis)
+    assert "There are no moments and percentiles: trajectories step" in page.text
+    assert "Median" not in _table(page, "Range of each response")[0]
 
 
 def test_indices_over_time_are_told_with_what_was_left_out(report, study):
@@ -181,15 +193,6 @@ def test_ranks_are_shown_as_far_as_known(report, study):
     page = report(runs, analysis)
     rows = _table(page, "Ranks of the parameters by Sobol indices, total order")
     assert rows[1] == ["Peak force", "1–2", "1–2", "3", "noise"]
-
-
-def test_the_verdict_stands_beside_every_number(report, study):
-    page = report(*study)
-    starts = ("Sobol", "Ranks", "Delta", "PAWN", "Regression", "Elementary", "The surrogate on")
-    tables = [rows for caption, rows in page.tables.items() if caption.startswith(starts)]
-    assert len(tables) == 11
-    for rows in tables:
-        assert rows[2][0] == "Remote plastic strainmostly constant"
 
 
 def test_other_families_answer_in_their_own_measure(study):
@@ -344,10 +347,3 @@ def test_none_or_all_above_the_limit_is_told_as_a_bound(above, told):
     words = "all" if above else "none"
     expected = f"Peak force above {'0' if above else '10⁶'} kN: {told} ({words} of 400 draws)."
     assert answers(runs, distribution.analysis(runs))[0] == expected
-
-
-def test_a_design_that_is_no_sample_of_the_distribution_says_so(report, study):
-    runs, analysis = study
-    page = report(runs.assign_attrs(method="morris"), analysis)
-    assert "There are no moments and percentiles: trajectories step" in page.text
-    assert "Median" not in _table(page, "Range of each response")[0]

@@ -34,6 +34,26 @@ def test_the_verdict_is_at_the_top_and_names_what_failed(told, findings):
     assert headings == ["A broken check", "A bad check", "A check of nothing", "A good check"]
     sections = [attrs["id"] for attrs in found.named("section")]
     assert sections[2:6] == ["broken", "bad", "void", "good"]
+    # failed rows are open and passed ones folded
+    found = told(findings)
+    assert len(found.named("details")) == 2, "one of them the provenance"
+    opened = found.source.index("<details>")
+    closed = found.source.index("</details>")
+    folded = found.source[opened:closed]
+    assert "Passed: A bad check (15 comparisons)" in folded
+    assert "FAILED" not in folded
+    rows = found.tables["Failed: A bad check"][1:]
+    assert [row[1] for row in rows] == ["diverged", "far off", "slightly off"]
+    assert {row[-1] for row in rows} == {"FAILED"}
+    assert rows[0][2] == "missing"
+    # sources reasons and provenance are told
+    found = told(findings)
+    assert "Independent values: Hertz 1881." in found.text
+    assert "ValueError: <no> (a.py)" in found.text  # escaped, not markup
+    assert found.named("no") == []
+    assert "1" * 64 in found.text
+    assert "impactlab verify studies/verification.yaml" in found.text
+    assert findings.attrs["study_text"].strip() in found.text
 
 
 def test_all_passed_is_said_plainly(told, outcomes):
@@ -43,9 +63,7 @@ def test_all_passed_is_said_plainly(told, outcomes):
         in found.text
     )
     assert "failed" not in found.text.replace("failed ones first", "").replace("0 failed", "")
-
-
-def test_no_check_at_all_is_no_success(told):
+    # no check at all is no success
     assert "Verification failed" in told(packed([])).text
 
 
@@ -63,30 +81,6 @@ def test_rows_tell_both_values_the_difference_and_the_tolerance(told, findings):
     assert rows[0][2:] == ["21.0648 kN", "21.0647 kN", "0.00032 %", "0.01 %", "passed"]
     assert rows[1][2:] == ["1.2003 mm", "1.2 mm", "0.3 µm", "2 µm", "passed"]
     assert rows[2][2:] == ["0.03 1/m", "0.031 1/m", "3.2 %of the peak", "10 %", "passed"]
-
-
-def test_failed_rows_are_open_and_passed_ones_folded(told, findings):
-    found = told(findings)
-    assert len(found.named("details")) == 2, "one of them the provenance"
-    opened = found.source.index("<details>")
-    closed = found.source.index("</details>")
-    folded = found.source[opened:closed]
-    assert "Passed: A bad check (15 comparisons)" in folded
-    assert "FAILED" not in folded
-    rows = found.tables["Failed: A bad check"][1:]
-    assert [row[1] for row in rows] == ["diverged", "far off", "slightly off"]
-    assert {row[-1] for row in rows} == {"FAILED"}
-    assert rows[0][2] == "missing"
-
-
-def test_sources_reasons_and_provenance_are_told(told, findings):
-    found = told(findings)
-    assert "Independent values: Hertz 1881." in found.text
-    assert "ValueError: <no> (a.py)" in found.text  # escaped, not markup
-    assert found.named("no") == []
-    assert "1" * 64 in found.text
-    assert "impactlab verify studies/verification.yaml" in found.text
-    assert findings.attrs["study_text"].strip() in found.text
 
 
 def test_the_page_is_sound_and_holds_its_figures(findings, tmp_path, page):

@@ -58,6 +58,18 @@ def test_many_runs_carry_labels_units_and_reasons():
     assert many.run.values.tolist() == [0, 1]
     assert many.run.attrs["long_name"]
     assert many.duration.item() == DURATION
+    # solve keeps only what was asked for
+    cases = case_table(IMPACT, GRID, duration=DURATION, varied={"velocity": [1.0, 2.0, 3.0]})
+    bare = solve(cases)
+    assert bare.keys() == {*RESPONSES, "status", "remarks"}
+    full = solve(cases, samples=7, profiles=True)
+    assert [full[name].tobytes() for name in bare] == [column.tobytes() for column in bare.values()]
+    assert {full[name].shape for name in HISTORIES} == {(3, 7)}
+    assert {name: full[name].shape for name in PROFILES} == {
+        "equivalent_plastic_strain": (3, 21, 5),
+        "plastic_strain": (3, 21, 5),
+        "deflection": (3, 21),
+    }
 
 
 @pytest.mark.parametrize("varied", [{}, {"velocity": []}], ids=["nothing varied", "no runs"])
@@ -73,20 +85,6 @@ def test_profiles_need_one_grid(name):
     with pytest.raises(ValueError, match="same nodes, points and rule"):
         solve(cases, profiles=True)
     assert np.isfinite(solve(cases)["peak_force"]).all()
-
-
-def test_solve_keeps_only_what_was_asked_for():
-    cases = case_table(IMPACT, GRID, duration=DURATION, varied={"velocity": [1.0, 2.0, 3.0]})
-    bare = solve(cases)
-    assert bare.keys() == {*RESPONSES, "status", "remarks"}
-    full = solve(cases, samples=7, profiles=True)
-    assert [full[name].tobytes() for name in bare] == [column.tobytes() for column in bare.values()]
-    assert {full[name].shape for name in HISTORIES} == {(3, 7)}
-    assert {name: full[name].shape for name in PROFILES} == {
-        "equivalent_plastic_strain": (3, 21, 5),
-        "plastic_strain": (3, 21, 5),
-        "deflection": (3, 21),
-    }
 
 
 def test_the_solid_model_is_solved_elsewhere():

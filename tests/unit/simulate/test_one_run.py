@@ -42,9 +42,7 @@ def test_every_variable_is_there_on_its_dimensions(run):
     assert set(run.data_vars) == {*RESPONSES, *HISTORIES, *PROFILES, *FLAGS}
     assert run.status.dtype == np.int32
     assert run.status.dims == ()
-
-
-def test_every_variable_has_units_and_a_long_name(run):
+    # every variable has units and a long name
     for name in set(run.variables) - {*FLAGS}:
         assert run[name].attrs["units"], name
         assert run[name].attrs["long_name"], name
@@ -52,17 +50,13 @@ def test_every_variable_has_units_and_a_long_name(run):
     assert run.status.attrs["flag_meanings"].split() == list(STATUS_FLAGS)
     assert run.remarks.attrs["flag_meanings"].split() == list(WARNINGS)
     assert run.status.attrs["flag_masks"].tolist() == list(BITS.values())
-
-
-def test_coordinates_are_those_of_the_discretisation(run):
+    # coordinates are those of the discretisation
     assert run.time.values == pytest.approx(np.linspace(0, DURATION, 101), rel=1e-15)
     assert run.x.values == pytest.approx(np.arange(21) * 0.78 / 20, rel=1e-14)
     # Gauss-Lobatto with 5 points: 0, sqrt(3/7), 1
     positions = np.array([-1, -np.sqrt(3 / 7), 0, np.sqrt(3 / 7), 1])
     assert run.z.values == pytest.approx(0.0139 * positions, rel=1e-12, abs=1e-17)
-
-
-def test_every_parameter_is_a_coordinate(run):
+    # every parameter is a coordinate
     expected = flatten(IMPACT, GRID) | {
         "sphere_mass": IMPACT.sphere.total_mass,
         "duration": DURATION,
@@ -110,10 +104,7 @@ def test_an_elastic_beam_has_no_negative_zeros():
     run = il.simulate(il.paper_impact(0.1), GRID, duration=DURATION, samples=2)
     assert not np.signbit(run.plastic_strain.values).any()
     assert (run.plastic_strain == 0).all()
-
-
-def test_the_lower_side_is_stretched_at_mid_span():
-    """z and the deflection point downwards: tension below the axis."""
+    # z and the deflection point downwards: tension below the axis.
     strain = il.simulate(IMPACT, GRID, duration=DURATION).plastic_strain
     assert strain.isel(x=10, z=-1) > 0
     assert strain.isel(x=10, z=0) < 0
@@ -205,9 +196,7 @@ def test_a_short_duration_names_what_is_missing_and_lasts_as_it_says(
 def test_no_duration_is_promised_where_a_long_one_gave_no_rebound():
     with pytest.warns(il.TooShortWarning, match=r"restitution: try a longer one;"):
         il.simulate(il.paper_impact(0.3), il.Discretisation(nodes=41), duration="60 ms", samples=2)
-
-
-def test_many_short_runs_give_one_warning():
+    # many short runs give one warning
     impact = replace(il.paper_impact(), beam_model="rigid")
     words = r"too short for contact_duration.* in 1 of 2 runs: take about 1\.8 ms"
     with pytest.warns(il.TooShortWarning, match=words) as caught:

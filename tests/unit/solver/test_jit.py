@@ -39,6 +39,15 @@ def hash_of(tree):
 
 def test_a_copy_of_the_sources_has_the_same_hash(tree):
     assert hash_of(tree) == jit.SOURCES_HASH
+    # bytecode beside the sources does not count
+    (tree / "__pycache__").mkdir(exist_ok=True)
+    (tree / "__pycache__" / "fibre.cpython-311.pyc").write_bytes(b"other")
+    assert hash_of(tree) == jit.SOURCES_HASH
+    # a new and a renamed source are another hash
+    (tree / "contact" / "thornton.py").write_text("")
+    added = hash_of(tree)
+    (tree / "contact" / "thornton.py").rename(tree / "contact" / "brake.py")
+    assert len({jit.SOURCES_HASH, added, hash_of(tree)}) == 3
 
 
 @pytest.mark.parametrize("source", ["section.py", "contact/stronge.py", "__init__.py"])
@@ -46,19 +55,6 @@ def test_another_number_in_any_source_is_another_hash(tree, source):
     with (tree / source).open("a") as file:
         file.write("\n_ANOTHER = 1\n")
     assert hash_of(tree) != jit.SOURCES_HASH
-
-
-def test_a_new_and_a_renamed_source_are_another_hash(tree):
-    (tree / "contact" / "thornton.py").write_text("")
-    added = hash_of(tree)
-    (tree / "contact" / "thornton.py").rename(tree / "contact" / "brake.py")
-    assert len({jit.SOURCES_HASH, added, hash_of(tree)}) == 3
-
-
-def test_bytecode_beside_the_sources_does_not_count(tree):
-    (tree / "__pycache__").mkdir(exist_ok=True)
-    (tree / "__pycache__" / "fibre.cpython-311.pyc").write_bytes(b"other")
-    assert hash_of(tree) == jit.SOURCES_HASH
 
 
 @pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")

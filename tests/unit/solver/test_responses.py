@@ -64,9 +64,7 @@ def peeq():
 
 def test_answers_are_the_responses_of_the_dataset():
     assert RESPONSE.names == ("status", "remarks", *RESPONSES)
-
-
-def test_blank_records_have_no_number_and_no_bit():
+    # blank records have no number and no bit
     records = blank(2)
     assert (records["status"] == 0).all()
     assert (records["remarks"] == 0).all()

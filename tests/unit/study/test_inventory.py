@@ -38,9 +38,7 @@ def test_a_run_without_answers_is_an_error(shards):
         open_answers(shards, index, ["force"]),
     ):
         pass
-
-
-def test_a_shard_that_is_damaged_meanwhile_is_an_error(shards):
+    # a shard that is damaged meanwhile is an error
     keys = np.array([f"{run:016}".encode() for run in range(10_000)])
     path = shards.write(keys, {"force": np.zeros(keys.size)})  # larger than a buffer of its file
     with open_answers(shards, RunIndex(np.append(KEYS, keys)), ["force"]) as columns:

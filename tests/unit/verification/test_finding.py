@@ -83,22 +83,18 @@ def outcome(*values, reason=""):
     return Outcome("name", "title", "source", 0.0, Finding(entries), reason)
 
 
-def test_verdicts():
+def test_verdicts(outcomes):
     assert outcome(1.0, 1.05).verdict == "passed"
     assert outcome(1.0, 2.0).verdict == "failed"
     assert outcome().verdict == "failed"
     assert outcome(reason="no").verdict == "error"
-
-
-def test_failures_and_the_worst_come_first():
+    # failures and the worst come first
     found = outcome(1.0, 1.5, np.nan, 0.2)
     assert [entry.where for entry in found.failures] == ["nan", "0.2", "1.5"]
     assert found.worst is not None
     assert found.worst.where == "nan"
     assert outcome().worst is None
-
-
-def test_gravest_first_keeps_the_order_otherwise(outcomes):
+    # gravest first keeps the order otherwise
     assert [found.name for found in gravest_first(outcomes)] == ["broken", "bad", "void", "good"]
 
 
@@ -112,8 +108,7 @@ def test_a_check_that_raises_is_an_outcome():
     assert "ZeroDivisionError" in found.reason
     assert "test_finding.py, line" in found.reason
 
-
-def test_ctrl_c_is_no_outcome():
+    # ctrl c is no outcome
     def check():
         raise KeyboardInterrupt
 

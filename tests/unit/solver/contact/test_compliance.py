@@ -162,18 +162,12 @@ def test_without_poissons_effect_bending_adds_nothing():
         beam = replace(TIMOSHENKO.beam, width=width, material=steel)
         _, gamma = contact_compliance(replace(TIMOSHENKO, beam=beam))
         assert abs(gamma) < 1e-3 * beam.depth**2
-
-
-def test_bending_of_a_narrow_beam_is_saint_venants():
-    """Plane stress: the surface thickens by nu M H^2/(8 EI), and so does it work on the moment."""
+    # Plane stress: the surface thickens by nu M H^2/(8 EI), and so does it work on the moment.
     beam = replace(TIMOSHENKO.beam, width=TIMOSHENKO.beam.depth / 4.0)
     _, gamma = contact_compliance(replace(TIMOSHENKO, beam=beam))
     # energy: twice nu H^2/8, less the mean over the section, and Cowper's shear of plane stress
     assert -0.07 < gamma / beam.depth**2 < -0.05
-
-
-def test_another_shear_coefficient_moves_only_its_own_deflection():
-    """gamma M/(EI) takes on what L/(4 k G A) loses, M = L/4."""
+    # gamma M/(EI) takes on what L/(4 k G A) loses, M = L/4.
     beam = TIMOSHENKO.beam
     gammas = [
         contact_compliance(replace(TIMOSHENKO, beam=replace(beam, shear_coefficient=k)))[1]
@@ -199,9 +193,7 @@ def test_a_strip_takes_over_what_it_does_in_statics():
     moment = 0.25 * beam.span / beam.bending_stiffness
     expected = (table - rest) @ [1.0, moment]
     assert modes.statics[0] - alone == pytest.approx(expected, rel=2e-3)
-
-
-def test_a_section_swings_as_fast_as_a_free_strip_of_plate():
+    # a section swings as fast as a free strip of plate
     beam, root = WIDE.beam, brentq(lambda x: np.cos(x) * np.cosh(x) - 1.0, 4.0, 5.0)
     D = beam.bending_stiffness / (beam.width * (1.0 - 0.3**2))
     plate = root**4 / beam.width**4 * D / (beam.material.density * beam.depth)

@@ -42,21 +42,16 @@ def released(deltas, K, delta_r, n):
     return K * (deltas - delta_r) ** (n + 1) / (n + 1)
 
 
-def test_the_laws_are_derived_twice():
-    """All but those added since, which the registry must mark as unconfirmed until they are."""
-    assert set(LAWS[:8]) <= set(REFERENCE) <= set(LAWS)
-    assert all(CONTACT_LAWS[law].unconfirmed for law in LAWS if law not in REFERENCE)
-
-
 def test_every_law_has_its_file_and_its_texts():
     for name in LAWS:
         assert import_module(f"impactlab.solver.contact.{name}").__doc__
         law = CONTACT_LAWS[name]
         assert law.name == name
         assert all((law.title, law.source, law.holds_for))
-
-
-def test_the_page_has_every_law_derived_twice_and_none_that_is_unknown():
+    # All but those added since, which the registry must mark as unconfirmed until they are.
+    assert set(LAWS[:8]) <= set(REFERENCE) <= set(LAWS)
+    assert all(CONTACT_LAWS[law].unconfirmed for law in LAWS if law not in REFERENCE)
+    # the page has every law derived twice and none that is unknown
     page = Path(__file__).parents[4] / "docs" / "contact_laws.md"
     tables = [line for line in page.read_text(encoding="utf-8").splitlines() if line[:1] == "|"]
     named = [name for line in tables for name in re.findall(r"`(\w+)`", line.split("|")[1])]
@@ -211,7 +206,5 @@ def test_limits_of_the_fits():
     F, _, delta_r, _ = curve(LAWS.index("mjg"), 4700 * d_c, *STEEL)
     assert F > 0
     assert 0.98 * 4700 * d_c < delta_r < 0.99 * 4700 * d_c
-
-
-def test_an_unknown_number_has_no_limit():
+    # an unknown number has no limit
     assert np.isnan(limit(len(LAWS), *STEEL))

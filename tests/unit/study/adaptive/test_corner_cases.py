@@ -61,17 +61,13 @@ def test_a_grids_extremes_with_every_word_and_without_the_discretisation(study):
     assert set(cases) == {"contact", "velocity"}
     found = set(zip(cases["contact"], cases["velocity"], strict=True))
     assert found == set(product(("hertz", "stronge"), (1.0, 2.0, 5.0)))
-
-
-def test_a_samples_bounds_and_far_quantiles_without_the_fixed(study):
+    # only the discretisation varied
+    cases = corner_cases(study("  {method: grid, parameters: {nodes: [11, 21, 41]}}"))
+    assert cases == {"velocity": [0.99]}
+    # a samples bounds and far quantiles without the fixed
     cases = corner_cases(study(SAMPLE))
     assert set(cases) == {"velocity", "beam_depth"}
     assert sorted(set(cases["velocity"])) == pytest.approx([1.0, 1.5, 2.0])
     least, middle, most = sorted(set(cases["beam_depth"]))
     # 99 % of a Gaussian lie within 2.5758 standard deviations
     assert [least, middle, most] == pytest.approx(0.0278 + 1e-4 * 2.5758 * np.array([-1, 0, 1]))
-
-
-def test_only_the_discretisation_varied(study):
-    cases = corner_cases(study("  {method: grid, parameters: {nodes: [11, 21, 41]}}"))
-    assert cases == {"velocity": [0.99]}

@@ -117,7 +117,7 @@ def test_a_base_is_changed_in_parts(read, grid):
     assert study.impact.sphere == paper_impact().sphere
 
 
-def test_a_grid_keeps_its_parameters_and_values_in_the_order_of_the_file(read, grid):
+def test_a_grid_keeps_its_parameters_and_values_in_the_order_of_the_file(read, grid, sample):
     wanted = {"rule": ["legendre", "lobatto"], "nodes": [21, 11], "gravity": [0, 9.81]}
     study = read(grid({"sampling.parameters": wanted}))
     assert list(study.sampling.parameters.items()) == [
@@ -126,9 +126,7 @@ def test_a_grid_keeps_its_parameters_and_values_in_the_order_of_the_file(read, g
         ("gravity", (0.0, 9.81)),
     ]
     assert study.sampling.runs == 8
-
-
-def test_a_sample_keeps_its_parameters_in_the_order_of_the_file(read, sample):
+    # a sample keeps its parameters in the order of the file
     uniform = {"distribution": "uniform", "low": 1, "high": 2}
     wanted = dict.fromkeys(["sphere_mass", "gravity", "velocity"], uniform)
     study = read(sample({"sampling.parameters": wanted}))
@@ -226,12 +224,10 @@ def test_mistakes_name_file_and_key(file, text, words):
         assert all(line.startswith(f"{path}: ") for line in lines.splitlines())
 
 
-def test_all_mistakes_are_told_at_once(file):
-    told = said(read_any, file("titel: x\nchecks: [half_spce]\n"))
-    assert len(told.splitlines()) == 3
-
-
 def test_the_other_kind_is_sent_to_its_command(file, grid):
     checks, runs = file(TEXT, "checks.yaml"), file(grid(), "runs.yaml")
     assert f"use `impactlab verify {checks}`" in said(read_study, checks)
     assert f"use `impactlab run {runs}`" in said(read_verification, runs)
+    # all mistakes are told at once
+    told = said(read_any, file("titel: x\nchecks: [half_spce]\n"))
+    assert len(told.splitlines()) == 3

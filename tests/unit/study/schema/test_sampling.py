@@ -159,39 +159,31 @@ WRONG_UNTIL = [
 ]
 
 
-def test_a_sample_may_grow(read, sampled):
+def test_a_sample_may_grow(read, sampled, problems, refused):
     study = read(sampled("sobol", base_samples=64, until=UNTIL))
     assert study.sampling.until.interval == 0.02
     assert study.sampling.runs == 512
     assert study.size == "512 runs, at most 2,000"
     read(sampled("sobol", base_samples=64, until=UNTIL | {"runs": 512}))
+    # both limits are required
+    found = problems(sampled("sobol", base_samples=64, until={}))
+    assert {key for key, _ in found} == {"sampling.until.interval", "sampling.until.runs"}
+    # intervals of very few samples decide nothing
+    text = sampled("sobol", base_samples=32, until=UNTIL)
+    refused(text, "sampling.base_samples", "must be at least 64 with until")
+    # responses must be asked of the study
+    until = UNTIL | {"responses": ["contact_duration"]}
+    text = sampled("sobol", base_samples=64, until=until)
+    asked = text[:-1] + ', "responses": ["peak_force"]}'
+    refused(asked, "sampling.until.responses.0", "choose from peak_force")
+    assert read(text).sampling.until.responses == ("contact_duration",)
+    # the indices must be asked for
+    text = sampled("sobol", base_samples=64, until=UNTIL)
+    text = text[:-1] + ', "analyses": ["convergence_in_nodes"]}'
+    assert "sampling.until" in {key for key, _ in problems(text)}
 
 
 @pytest.mark.parametrize(("change", "key", "words"), WRONG_UNTIL)
 def test_a_mistake_in_until_is_one_problem_at_its_key(refused, sampled, change, key, words):
     text = sampled("sobol", base_samples=64, until=UNTIL | change)
     refused(text, f"sampling.until.{key}", words)
-
-
-def test_both_limits_are_required(problems, sampled):
-    found = problems(sampled("sobol", base_samples=64, until={}))
-    assert {key for key, _ in found} == {"sampling.until.interval", "sampling.until.runs"}
-
-
-def test_intervals_of_very_few_samples_decide_nothing(refused, sampled):
-    text = sampled("sobol", base_samples=32, until=UNTIL)
-    refused(text, "sampling.base_samples", "must be at least 64 with until")
-
-
-def test_responses_must_be_asked_of_the_study(refused, read, sampled):
-    until = UNTIL | {"responses": ["contact_duration"]}
-    text = sampled("sobol", base_samples=64, until=until)
-    asked = text[:-1] + ', "responses": ["peak_force"]}'
-    refused(asked, "sampling.until.responses.0", "choose from peak_force")
-    assert read(text).sampling.until.responses == ("contact_duration",)
-
-
-def test_the_indices_must_be_asked_for(problems, sampled):
-    text = sampled("sobol", base_samples=64, until=UNTIL)
-    text = text[:-1] + ', "analyses": ["convergence_in_nodes"]}'
-    assert "sampling.until" in {key for key, _ in problems(text)}

@@ -49,15 +49,11 @@ def test_collapse_begins_at_20_9_of_the_deflection_at_yield():
     assert collapse.load_at(BEAM, 2.23 * W_YIELD) == pytest.approx(limit, rel=1e-9)
     assert collapse.load_at(BEAM, 2.2 * W_YIELD) < limit * (1 - 1e-5)
     assert collapse.load_at(HARDENING, 10 * W_YIELD) > 1.1 * limit
-
-
-def test_missing_work_is_the_area_above_the_curve():
+    # missing work is the area above the curve
     limit = bending.collapse_load(BEAM)
     area, _ = quad(lambda w: limit - collapse.load_at(BEAM, w), 1e-9, 20 / 9 * W_YIELD, limit=200)
     assert collapse.missing_work(BEAM) == pytest.approx(area, rel=1e-5)
-
-
-def test_what_the_beam_cannot_carry_is_refused():
+    # what the beam cannot carry is refused
     with pytest.raises(ValueError, match="cannot carry a moment"):
         collapse.midspan_deflection(BEAM, 1.001 * bending.collapse_load(BEAM))
 
@@ -71,9 +67,7 @@ def test_mode_mass_is_that_of_the_triangle():
     beam = IMPACT.beam
     half, _ = quad(lambda x: beam.mass_per_length * (2 * x / beam.span) ** 2, 0, beam.span / 2)
     assert collapse.mode_mass(IMPACT) == pytest.approx(200 + 2 * half, rel=1e-12)
-
-
-def test_mode_leaves_the_least_kinetic_energy_of_the_difference():
+    # mode leaves the least kinetic energy of the difference
     beam, v = IMPACT.beam, collapse.mode_velocity(IMPACT)
 
     def difference(velocity):
@@ -81,9 +75,7 @@ def test_mode_leaves_the_least_kinetic_energy_of_the_difference():
         return 0.5 * (200 * (2.0 - velocity) ** 2 + triangle)
 
     assert difference(v) < min(difference(v * 1.001), difference(v * 0.999))
-
-
-def test_a_constant_force_brakes_it():
+    # a constant force brakes it
     w, v, t = (
         getattr(collapse, name)(IMPACT)
         for name in ("mode_deflection", "mode_velocity", "mode_duration")
@@ -91,9 +83,7 @@ def test_a_constant_force_brakes_it():
     assert w == pytest.approx(0.5 * v * t, rel=1e-12)
     work = 4 * 345e6 * 0.06 * 0.0278**2 / 4 / 0.78 * w
     assert collapse.mode_energy(IMPACT) == pytest.approx(work, rel=1e-12)
-
-
-def test_energy_ratio_by_hand():
+    # energy ratio by hand
     load = bending.collapse_load(IMPACT.beam)
     stored = load**2 * 0.78**3 / (96 * 210e9 * 0.06 * 0.0278**3 / 12)
     assert collapse.energy_ratio(IMPACT) == pytest.approx(400 / stored, rel=1e-12)

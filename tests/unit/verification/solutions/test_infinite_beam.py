@@ -49,9 +49,7 @@ def test_a_short_force_is_an_impulse():
     time = np.array([0.0, 1e-7, 2e-7, 1e-3])
     w = deflection_under_force(BEAM, time, np.array([0.0, 2e7, 0.0, 0.0]))
     assert w[-1] == pytest.approx(deflection_under_impulse(BEAM, 2.0, 1e-3), rel=1e-4)
-
-
-def test_deflection_grows_with_the_root_of_time_from_zero():
+    # deflection grows with the root of time from zero
     w = deflection_under_impulse(BEAM, 1.0, [0.0, 1e-3, 4e-3])
     assert w[0] == 0.0
     assert w[2] == pytest.approx(2 * w[1], rel=1e-12)

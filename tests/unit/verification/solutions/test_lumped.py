@@ -39,10 +39,7 @@ def test_mass_and_stiffness_by_quadrature_of_the_static_shape():
     mass, stiffness = lumped.spring_mass(beam)
     assert mass == pytest.approx(beam.mass_per_length * energy, rel=1e-12)
     assert stiffness == pytest.approx(beam.bending_stiffness * bending, rel=1e-12)
-
-
-def test_frequency_is_rayleighs_estimate():
-    """Above the first of the modes, and close to it."""
+    # Above the first of the modes, and close to it.
     mass, stiffness = lumped.spring_mass(PAPER.beam)
     ratio = np.sqrt(stiffness / mass) / odd_modes(PAPER.beam, 1).frequencies[0]
     assert ratio == pytest.approx(1.0072, abs=1e-4)

@@ -40,15 +40,11 @@ def test_lobatto_points_are_the_tabled_ones():
     positions, weights = rule("lobatto", 5)
     np.testing.assert_allclose(positions, [-1, -np.sqrt(3 / 7), 0, np.sqrt(3 / 7), 1], atol=1e-15)
     np.testing.assert_allclose(weights, [1 / 10, 49 / 90, 32 / 45, 49 / 90, 1 / 10], atol=1e-15)
-
-
-def test_legendre_points_are_the_tabled_ones():
+    # legendre points are the tabled ones
     positions, weights = rule("legendre", 3)
     np.testing.assert_allclose(positions, [-np.sqrt(0.6), 0, np.sqrt(0.6)], atol=1e-15)
     np.testing.assert_allclose(weights, [5 / 9, 8 / 9, 5 / 9], atol=1e-15)
-
-
-def test_layers_are_the_midpoints():
+    # layers are the midpoints
     positions, weights = rule("layers", 4)
     np.testing.assert_allclose(positions, [-0.75, -0.25, 0.25, 0.75])
     np.testing.assert_allclose(weights, 0.5)

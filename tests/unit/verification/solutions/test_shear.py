@@ -51,10 +51,7 @@ def test_shear_stiffness_of_the_papers_beam():
     assert beam_modes.shear_stiffness(other) == pytest.approx(
         0.6 * beam_modes.shear_stiffness(BEAM)
     )
-
-
-def test_coefficient_is_that_of_the_energy_in_a_parabola():
-    """tau = 1.5 (1 - xi^2) of the mean: its energy over that of the mean is 1/k."""
+    # tau = 1.5 (1 - xi^2) of the mean: its energy over that of the mean is 1/k.
     energy, _ = quad(lambda xi: 0.5 * (1.5 * (1 - xi**2)) ** 2, -1, 1)
     assert BEAM.shear_coefficient == pytest.approx(1 / energy)
 

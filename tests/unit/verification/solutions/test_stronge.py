@@ -110,17 +110,13 @@ def test_law_creates_energy_from_yield_up_to_x_of_2_6728():
     assert BODIES.restitution(velocity_reaching(1.415), MASS) == pytest.approx(1.1008, abs=5e-5)
     assert BODIES.restitution(velocity_reaching(2.6727), MASS) > 1.0
     assert BODIES.restitution(velocity_reaching(2.6729), MASS) < 1.0
-
-
-def test_law_leaves_a_bulge_from_yield_up_to_x_of_1_9983():
+    # law leaves a bulge from yield up to x of 1 9983
     signs = [
         BODIES.residual_indentation(x * BODIES.yield_indentation) for x in (1.01, 1.998, 1.9984)
     ]
     assert signs[0] < 0 > signs[1]
     assert signs[2] > 0
-
-
-def test_restitution_falls_with_velocity_beyond_its_peak():
+    # restitution falls with velocity beyond its peak
     values = [BODIES.restitution(velocity, MASS) for velocity in (0.1, 1.0, 5.0, 20.0, 100.0)]
     assert values == sorted(values, reverse=True)
     assert values[-1] < 0.5 < values[0]
