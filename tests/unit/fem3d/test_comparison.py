@@ -29,6 +29,15 @@ def test_differences_are_relative_to_the_3d_model():
     assert force["difference"].values[1:] == pytest.approx((own - 11e3) / 11e3)
     assert np.isnan(force["difference"].values[0])
     assert force["units"].item() == "N"
+    # nothing is compared with zero
+    found = compared(solid(), beam_models()).sel(response="remote_plastic_strain")
+    assert (found["value"] == 0.0).all()
+    assert np.isnan(found["difference"]).all()
+    # a value that its status takes away is missing
+    growing = np.int32(STATUS_FLAGS["indentation_still_growing"][0])
+    found = compared(solid().assign(status=growing), beam_models())
+    assert np.isnan(found["value"].sel(response="peak_force", model="solid"))
+    assert found["value"].sel(response="contact_duration", model="solid") == 0.2e-3
 
 
 @pytest.mark.parametrize("name", ["peak_plastic_strain", "number_of_contacts"])
@@ -36,19 +45,6 @@ def test_what_is_not_the_same_quantity_is_not_compared(name):
     found = compared(solid(), beam_models()).sel(response=name)
     assert np.isfinite(found["value"]).all()
     assert np.isnan(found["difference"]).all()
-
-
-def test_nothing_is_compared_with_zero():
-    found = compared(solid(), beam_models()).sel(response="remote_plastic_strain")
-    assert (found["value"] == 0.0).all()
-    assert np.isnan(found["difference"]).all()
-
-
-def test_a_value_that_its_status_takes_away_is_missing():
-    growing = np.int32(STATUS_FLAGS["indentation_still_growing"][0])
-    found = compared(solid().assign(status=growing), beam_models())
-    assert np.isnan(found["value"].sel(response="peak_force", model="solid"))
-    assert found["value"].sel(response="contact_duration", model="solid") == 0.2e-3
 
 
 def test_the_file_has_a_row_a_number_and_says_why_one_is_missing(tmp_path):

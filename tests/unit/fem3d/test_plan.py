@@ -78,28 +78,32 @@ def test_the_papers_case_takes_its_duration_and_about_a_minute(quick):
     finer = quarter_mesh(quick.impact, element_size=found.element_size / 2.5)
     assert estimate(finer, quick.impact, duration=found.duration).cpu_seconds > USUAL_TIME
     assert not found.problem(workers=1)
-
-
-def test_a_moment_is_no_reason_for_a_mesh_without_bounds(quick):
-    assert planned(quick, duration=1e-7).cost.elements < 500_000
-
-
-def test_a_size_beyond_reason_is_refused(quick):
-    with pytest.raises(ValueError, match=r"mesh.element_size = 1e-120 m: must be at least 3.5e-07"):
-        planned(quick, element_size=1e-120)
-
-
-def test_a_smaller_contact_takes_smaller_elements(quick):
+    # a smaller contact takes smaller elements
     small = replace(quick.impact, sphere=replace(quick.impact.sphere, radius=0.005))
     found = planned(replace(quick, impact=small), duration=5e-5)
     assert found.element_size < contact_radius(small) / 2
-
-
-def test_duration_ends_with_the_study_at_the_latest(quick):
+    # duration ends with the study at the latest
     assert planned(replace(quick, longest=0.3e-3), element_size=2e-3).duration == 0.3e-3
     unfinished = planned(replace(quick, longest=0.1e-3), element_size=2e-3)
     assert unfinished.duration == 0.1e-3
     assert np.isnan(unfinished.first_contact)
+    # the floor of the cost lies below the cost
+    for size in (2e-3, 1e-3, 5e-4):
+        mesh = quarter_mesh(quick.impact, element_size=size)
+        cost = estimate(mesh, quick.impact, duration=1e-3)
+        floor = least_cost(quick.impact, element_size=size, duration=1e-3)
+        assert floor.elements < cost.elements
+        assert floor.cpu_seconds < cost.cpu_seconds
+
+
+def test_a_moment_is_no_reason_for_a_mesh_without_bounds(quick):
+    assert planned(quick, duration=1e-7).cost.elements < 500_000
+    # a size beyond reason is refused
+    with pytest.raises(ValueError, match=r"mesh.element_size = 1e-120 m: must be at least 3.5e-07"):
+        planned(quick, element_size=1e-120)
+    # a patch that does not fit is refused
+    with pytest.raises(ValueError, match="to fit on beam and sphere"):
+        planned(quick, patch=0.05)
 
 
 def test_what_does_not_fit_memory_is_told_without_a_mesh(quick, monkeypatch):
@@ -109,15 +113,6 @@ def test_what_does_not_fit_memory_is_told_without_a_mesh(quick, monkeypatch):
     assert "--element-size 0.001 mm: about" in problem
     assert "of memory" in problem
     assert "--force" in problem
-
-
-def test_the_floor_of_the_cost_lies_below_the_cost(quick):
-    for size in (2e-3, 1e-3, 5e-4):
-        mesh = quarter_mesh(quick.impact, element_size=size)
-        cost = estimate(mesh, quick.impact, duration=1e-3)
-        floor = least_cost(quick.impact, element_size=size, duration=1e-3)
-        assert floor.elements < cost.elements
-        assert floor.cpu_seconds < cost.cpu_seconds
 
 
 @pytest.mark.parametrize(
@@ -139,11 +134,6 @@ def test_hours_are_told_at_what_drives_them(quick, given, option, monkeypatch):
 def test_numbers_that_make_no_sense_are_refused(quick, name):
     with pytest.raises(ValueError, match=rf"witness\.{name} = -1.0: must be above zero"):
         planned(quick, **{name: -1.0})
-
-
-def test_a_patch_that_does_not_fit_is_refused(quick):
-    with pytest.raises(ValueError, match="to fit on beam and sphere"):
-        planned(quick, patch=0.05)
 
 
 def test_threads_beyond_the_machines_make_nothing_faster(quick, monkeypatch):

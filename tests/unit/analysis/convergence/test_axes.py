@@ -71,9 +71,7 @@ def test_slow_growth_is_never_called_converged():
         found = judge(1.0 - size * SPACINGS**0.2, SPACINGS)
         assert found.verdict is AxisVerdict.NOT_YET_CONVERGED
         assert np.isnan(found.extrapolated)
-
-
-def test_a_coarse_grid_out_of_line_costs_the_safety_factor():
+    # a coarse grid out of line costs the safety factor
     smooth = 5 + 40 * SPACINGS**2
     for coarsest in (4.9, np.nan):
         bent = np.array([*smooth[:4], coarsest])
@@ -81,9 +79,7 @@ def test_a_coarse_grid_out_of_line_costs_the_safety_factor():
         assert found.verdict is AxisVerdict.CONVERGED
         assert found.gci == pytest.approx(3.0 / 1.25 * judge(smooth, SPACINGS).gci)
         assert found.extrapolated == pytest.approx(5.0)
-
-
-def test_a_value_of_zero_on_the_finest_grid():
+    # a value of zero on the finest grid
     found = judge(np.array([0.0, 1e-5, 3e-5, 7e-5, 15e-5]), SPACINGS)
     assert found.verdict is AxisVerdict.NOT_YET_CONVERGED
     assert found.gci == np.inf
@@ -115,6 +111,18 @@ def test_ratio_comes_from_the_intervals(grid_runs):
     runs = grid_runs({"nodes": [5, 9, 21]}, peak_force=lambda nodes: 7 + _h(nodes) ** 2)
     found = axes.NODES.analysis(runs)
     assert found["nodes_observed_order"].item() == pytest.approx(2.0, abs=1e-9)
+    # says that time step and spacing go together
+    runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: 5 + _h(nodes) ** 2)
+    found = axes.NODES.analysis(runs)
+    for name in ("nodes_observed_order", "nodes_gci", "nodes_verdict", "nodes_summary"):
+        assert "space and time together" in found[name].attrs["comment"]
+    # refuses repeated nodes
+    runs = grid_runs({"nodes": [51, 101, 101]}, peak_force=lambda nodes: nodes)
+    with pytest.raises(ValueError, match="must rise"):
+        axes.NODES.analysis(runs)
+    # a model without waves has a time step of its own
+    runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: nodes)
+    assert axes.coupling(runs.assign_coords(beam_model="spring_mass")) == ""
 
 
 def test_a_failed_run_gives_no_number(grid_runs, verdicts_of):
@@ -130,32 +138,17 @@ def test_a_failed_run_gives_no_number(grid_runs, verdicts_of):
     gone = found.sel(response="peak_force", velocity=5.0)
     for name in ("nodes_observed_order", "nodes_extrapolated", "nodes_gci"):
         assert np.isnan(gone[name])
-
-
-def test_a_number_from_a_diverged_run_is_not_used(grid_runs, verdicts_of):
+    # a number from a diverged run is not used
     runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: 5 + _h(nodes) ** 2)
     runs["status"][0] = 1
     found = axes.NODES.analysis(runs)
     assert verdicts_of(found["nodes_verdict"]) == ["undetermined"]
 
 
-def test_says_that_time_step_and_spacing_go_together(grid_runs):
-    runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: 5 + _h(nodes) ** 2)
-    found = axes.NODES.analysis(runs)
-    for name in ("nodes_observed_order", "nodes_gci", "nodes_verdict", "nodes_summary"):
-        assert "space and time together" in found[name].attrs["comment"]
-
-
 @pytest.mark.parametrize(("nodes", "applies"), [([51, 101], False), ([51, 101, 201], True)])
 def test_needs_three_grids(grid_runs, nodes, applies):
     runs = grid_runs({"nodes": nodes}, peak_force=lambda nodes: nodes)
     assert axes.NODES.applies(runs) is applies
-
-
-def test_refuses_repeated_nodes(grid_runs):
-    runs = grid_runs({"nodes": [51, 101, 101]}, peak_force=lambda nodes: nodes)
-    with pytest.raises(ValueError, match="must rise"):
-        axes.NODES.analysis(runs)
 
 
 AXES = {"nodes": [51, 101, 201], "courant": [0.8, 0.1, 0.2, 0.4]}
@@ -181,9 +174,7 @@ def test_time_is_judged_at_each_number_of_nodes(both):
     np.testing.assert_allclose(found["time_step_fit_extrapolated"], 7 + 5 * _h(both["nodes"]))
     np.testing.assert_allclose(found["time_step_asymptotic_ratio"], 1.0, atol=0.01)
     assert "not that of the beam" in found["time_step_verdict"].attrs["comment"]
-
-
-def test_space_is_judged_at_each_courant(both):
+    # space is judged at each courant
     found = axes.NODES.analysis(both).sel(response="peak_force")
     assert found["nodes_gci"].dims == ("courant",)
     fine, coarse = (found["nodes_observed_order"].sel(courant=at).item() for at in (0.1, 0.8))
@@ -212,11 +203,6 @@ def test_says_what_the_time_step_follows(grid_runs, coords, said):
     assert said in axes.coupling(runs.assign_coords(coords))
 
 
-def test_a_model_without_waves_has_a_time_step_of_its_own(grid_runs):
-    runs = grid_runs({"nodes": [51, 101, 201]}, peak_force=lambda nodes: nodes)
-    assert axes.coupling(runs.assign_coords(beam_model="spring_mass")) == ""
-
-
 @pytest.mark.parametrize(("values", "applies"), [([0.4, 0.8], False), ([0.2, 0.4, 0.8], True)])
 def test_needs_three_time_steps(grid_runs, values, applies):
     runs = grid_runs({"courant": values}, peak_force=lambda courant: courant)
@@ -243,9 +229,7 @@ def test_without_limit_no_number_is_given(grid_runs, verdicts_of):
     assert "does not harden" in found["nodes_summary"].attrs["without_limit"]
     force = found.sel(response="peak_force")
     assert flag not in np.ravel(verdicts_of(force["nodes_behaviour"]))
-
-
-def test_kinematic_hardening_brings_a_limit_back(grid_runs):
+    # kinematic hardening brings a limit back
     runs = grid_runs(
         {"nodes": [51, 101, 201]}, peak_plastic_strain=lambda nodes: 1 + 8 * _h(nodes) ** 2
     ).assign_coords(beam_isotropic_hardening_modulus=0.0, beam_kinematic_hardening_modulus=1e9)

@@ -53,26 +53,18 @@ def test_two_and_three_grids_by_hand():
     np.testing.assert_allclose(numerical_uncertainty([1.0, 1.1], [1.0, 3.0])[0], [0.15, 0.25])
     three, _ = numerical_uncertainty([1.00, 1.02, 0.94], [1.0, 2.0, 4.0])
     np.testing.assert_allclose(three, [0.24, 0.26, 0.30])
-
-
-def test_nasa_table():
-    """GCI of the finest 0.1031 %; order 1.79 on three grids, which may be that of noise."""
+    # GCI of the finest 0.1031 %; order 1.79 on three grids, which may be that of noise.
     values = [0.97050, 0.96854, 0.96178]
     found = judge(np.array(values), H[:3])
     assert found.gci == pytest.approx(0.001031, rel=1e-3)
     amounts, _ = numerical_uncertainty(values, H[:3])
     assert amounts[0] == pytest.approx(3 * (0.97050 - 0.96178) / 3)
     assert amounts[1] == pytest.approx(amounts[0] + 0.00196)
-
-
-def test_three_grids_that_agree_leave_nothing_to_the_fit():
-    """A count that differs on the coarsest grid alone: its verdict is sound, so is its number."""
+    # A count that differs on the coarsest grid alone: its verdict is sound, so is its number.
     found = judge(np.array([4.0, 4.0, 4.0, 3.0, 3.0]), H)
     assert found.verdict is AxisVerdict.AT_ROUND_OFF
     assert found.uncertainty <= 1e-9
-
-
-def test_a_slow_drift_is_bounded_by_its_own_order():
+    # a slow drift is bounded by its own order
     values = 1.0 - 0.1 * H**0.3
     amounts, how = numerical_uncertainty(values, H)
     assert amounts[0] == pytest.approx(3 * 0.1)

@@ -28,16 +28,20 @@ def test_too_high_an_order_is_replaced_by_the_second():
     assert found.free_order == pytest.approx(3.0, rel=1e-4)
     assert found.deviation > 0
     assert uncertainty(found, values)[0] > 3 * found.errors[0]
-
-
-def test_both_orders_where_none_is_seen():
-    """First and second order that nearly cancel: the minimum is at h = 3."""
+    # First and second order that nearly cancel: the minimum is at h = 3.
     values = 1.0 - 6e-3 * H + 1e-3 * H**2
     found = fit(values, H)
     assert found.expansion in (Expansion.BOTH, Expansion.SECOND)
     slow = fit(1.0 + np.log(H) + 0.01 * H, H)
     assert slow.free_order < 0.5
     assert (slow.expansion, slow.order) == (Expansion.BOTH, 1.0)
+    # the order of the grids does not matter
+    values = 1.0 + 1e-3 * H**1.5 + 1e-4 * np.array([1, -2, 1, 3, -1])
+    one, other = fit(values, H), fit(values[::-1], H[::-1])
+    assert other.extrapolated == pytest.approx(one.extrapolated, rel=1e-7)
+    # refuses fewer than four grids
+    with pytest.raises(ValueError, match="four grids, not 3"):
+        fit([1.0, 2.0, 3.0], [1.0, 2.0, 4.0])
 
 
 def test_the_expansion_of_both_is_a_weighted_parabola():
@@ -80,9 +84,7 @@ def test_a_good_fit_of_an_assumed_order_has_the_factor_3():
     assert found.deviation < np.ptp(values) / 4
     expected = 3 * found.errors + found.deviation + abs(found.residuals)
     np.testing.assert_allclose(uncertainty(found, values), expected)
-
-
-def test_a_poor_fit_is_widened_by_its_deviation():
+    # a poor fit is widened by its deviation
     values = np.array([1.0, 1.2, 0.9, 1.1, 1.0])
     found = fit(values, H)
     data_range = 0.3 / 4
@@ -105,14 +107,3 @@ def test_the_interval_holds_the_limit_in_19_of_20_draws(scatter, grids):
         wide.append(amount[0] / 1e-3)
     assert held >= 0.93 * 200
     assert np.median(wide) < 4.0  # and is no empty promise
-
-
-def test_the_order_of_the_grids_does_not_matter():
-    values = 1.0 + 1e-3 * H**1.5 + 1e-4 * np.array([1, -2, 1, 3, -1])
-    one, other = fit(values, H), fit(values[::-1], H[::-1])
-    assert other.extrapolated == pytest.approx(one.extrapolated, rel=1e-7)
-
-
-def test_refuses_fewer_than_four_grids():
-    with pytest.raises(ValueError, match="four grids, not 3"):
-        fit([1.0, 2.0, 3.0], [1.0, 2.0, 4.0])

@@ -66,6 +66,10 @@ def test_a_reference_of_zero_makes_other_values_infinitely_wrong(grid_runs):
     runs = grid_runs({"points": [2, 3]}, peak_plastic_strain=lambda points: 1e-3 * (points < 3))
     found = in_points.analysis(runs)
     assert found["points_error"].values.tolist() == [[np.inf, 0.0]]
+    # uncertainty with the most points is relative
+    runs = grid_runs({"points": [5, 3]}, peak_force=lambda points: 2.0 + 0.1 * (points < 5))
+    found = in_points.analysis(runs)
+    assert found["points_uncertainty"].item() == pytest.approx(0.15)
 
 
 @pytest.mark.parametrize(("points", "applies"), [([3], False), ([3, 5], True)])
@@ -86,9 +90,3 @@ def test_needs_two_values(grid_runs, points, applies):
 )
 def test_uncertainty_of_each_number_of_points(values, expected):
     np.testing.assert_allclose(in_points.numerical_uncertainty(values), expected)
-
-
-def test_uncertainty_with_the_most_points_is_relative(grid_runs):
-    runs = grid_runs({"points": [5, 3]}, peak_force=lambda points: 2.0 + 0.1 * (points < 5))
-    found = in_points.analysis(runs)
-    assert found["points_uncertainty"].item() == pytest.approx(0.15)

@@ -31,24 +31,18 @@ def test_celik_table():
     assert found.order == pytest.approx(1.534, abs=5e-4)
     assert found.extrapolated == pytest.approx(6.1685, abs=5e-5)
     assert found.gci(SAFETY_CREDIBLE) == pytest.approx(0.02175, abs=5e-6)
-
-
-def test_celik_table_of_low_order():
+    # celik table of low order
     found = estimate([10.7880, 10.7250, 10.6050], _spacings(CELIK_COARSER))
     assert found.order == pytest.approx(0.75, abs=5e-3)
     assert found.extrapolated == pytest.approx(10.8801, abs=5e-4)
     assert found.gci(SAFETY_CREDIBLE) == pytest.approx(0.011, abs=5e-4)
-
-
-def test_celik_table_with_oscillation():
+    # celik table with oscillation
     found = estimate([6.0042, 5.9624, 6.0909], _spacings(CELIK_COARSER))
     assert found.behaviour is Behaviour.OSCILLATORY
     assert found.order == pytest.approx(1.51, abs=5e-3)
     assert found.gci(SAFETY_CREDIBLE) == pytest.approx(0.005, abs=5e-4)
     assert math.isnan(found.extrapolated)
-
-
-def test_nasa_table():
+    # nasa table
     found = estimate([0.97050, 0.96854, 0.96178], [1.0, 2.0, 4.0])
     assert found.order == pytest.approx(1.78618, abs=2e-5)
     assert found.extrapolated == pytest.approx(0.97130, abs=5e-6)
@@ -65,12 +59,6 @@ def test_asymptotic_ratio_of_the_tables(values, spacings):
     """Celik's equation for p makes it f1/f2 on any ratios."""
     found = estimate(values, spacings)
     assert found.asymptotic_ratio == pytest.approx(values[0] / values[1], rel=1e-9)
-
-
-def test_too_high_an_order_shows_in_the_asymptotic_ratio():
-    found = estimate([1 + 1e-6 * h**2.9 for h in (1.0, 2.0, 4.0)], [1.0, 2.0, 4.0])
-    assert found.asymptotic_ratio == pytest.approx(2**0.9, rel=1e-4)
-    assert math.isnan(estimate([1.0, 1.2, 0.9], [1.0, 2.0, 4.0]).asymptotic_ratio)
 
 
 @pytest.mark.parametrize(
@@ -102,12 +90,6 @@ def test_every_class(values, behaviour, order):
     assert math.isfinite(found.gci(SAFETY_DOUBTFUL)) == converging
 
 
-def test_logarithmic_growth_on_unequal_ratios_is_of_order_zero():
-    spacings = [1.0, 1.5, 6.0]
-    found = estimate([-math.log(h) for h in spacings], spacings)
-    assert found.order == pytest.approx(0.0, abs=1e-9)
-
-
 @pytest.mark.parametrize(
     ("order", "credible", "asymptotic"),
     [
@@ -130,10 +112,19 @@ def test_an_order_above_the_formal_one_does_not_narrow_the_gci():
     assert found.gci(1.25) == pytest.approx(1.25 * 0.007 / 1.001 / 3.0)
     assert safety([found]) == 3.0
     assert safety([estimate([1 + h**2 for h in (0.1, 0.2, 0.4)], [0.1, 0.2, 0.4])]) == 1.25
-
-
-def test_gci_relative_to_zero_is_infinite():
+    # gci relative to zero is infinite
     assert grid_convergence_index(0.0, 1.0, 2.0, 2.0) == math.inf
+    # too high an order shows in the asymptotic ratio
+    found = estimate([1 + 1e-6 * h**2.9 for h in (1.0, 2.0, 4.0)], [1.0, 2.0, 4.0])
+    assert found.asymptotic_ratio == pytest.approx(2**0.9, rel=1e-4)
+    assert math.isnan(estimate([1.0, 1.2, 0.9], [1.0, 2.0, 4.0]).asymptotic_ratio)
+    # logarithmic growth on unequal ratios is of order zero
+    spacings = [1.0, 1.5, 6.0]
+    found = estimate([-math.log(h) for h in spacings], spacings)
+    assert found.order == pytest.approx(0.0, abs=1e-9)
+    # refuses other than three grids
+    with pytest.raises(ValueError, match="three grids, not 4"):
+        estimate([1.0, 2.0, 3.0, 4.0], [1.0, 2.0, 3.0, 4.0])
 
 
 ratios = st.floats(1.1, 5.0)
@@ -166,8 +157,3 @@ def test_order_solves_celiks_equation(size, sign, r21, r32):
 def test_refuses_spacings_that_do_not_rise(spacings):
     with pytest.raises(ValueError, match="must rise"):
         estimate([1.0, 2.0, 3.0], spacings)
-
-
-def test_refuses_other_than_three_grids():
-    with pytest.raises(ValueError, match="three grids, not 4"):
-        estimate([1.0, 2.0, 3.0, 4.0], [1.0, 2.0, 3.0, 4.0])

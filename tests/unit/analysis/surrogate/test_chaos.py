@@ -49,17 +49,13 @@ def test_terms_are_products_of_scipys_polynomials():
             for a, u in zip(row, unit.T, strict=True)
         ]
         np.testing.assert_allclose(values, np.prod(factors, axis=0), rtol=1e-11, atol=1e-12)
-
-
-def test_the_basis_is_orthonormal():
+    # the basis is orthonormal
     nodes, weights = np.polynomial.legendre.leggauss(8)  # exact up to degree 15
     unit = np.array(list(product((nodes + 1) / 2, repeat=2)))
     weight = np.array([a * b for a, b in product(weights / 2, repeat=2)])
     columns = basis(unit, hyperbolic(2, 7), [UNIT] * unit.shape[1])
     np.testing.assert_allclose(columns * weight @ columns.T, np.eye(len(columns)), atol=1e-12)
-
-
-def test_a_chaos_is_the_sum_of_its_terms():
+    # a chaos is the sum of its terms
     unit = np.array([[0.0, 0.5], [0.25, 1.0]])
     chaos = Chaos(np.array([[0, 0], [1, 0], [0, 2]]), np.array([2.0, 3.0, 5.0]), (UNIT, UNIT))
     linear, quadratic = 2 * unit[:, 0] - 1, 1.5 * (2 * unit[:, 1] - 1) ** 2 - 0.5
@@ -84,22 +80,25 @@ def test_two_parameters_and_their_product():
     np.testing.assert_allclose(found["first_order"], alone / whole, rtol=1e-10)
     np.testing.assert_allclose(found["total_order"], (alone + 1 / 144) / whole, rtol=1e-10)
     np.testing.assert_allclose(found["first_order_interval"], 0.0, atol=1e-10)
-
-
-def test_groups_take_their_parameters_together():
+    # groups take their parameters together
     unit = np.random.default_rng(0).random((200, 3))
     found = _indices(unit, unit[:, 0] + unit[:, 1] + unit[:, 0] * unit[:, 2], "aba")
     # f = const + 3/2 u + v + w/2 + u w, u, v, w with a variance of 1/12 each
     both = (9 / 4 + 1 / 4) / 12 + 1 / 144
     np.testing.assert_allclose(found["first_order"], np.array([both, 1 / 12]) / (both + 1 / 12))
     np.testing.assert_allclose(found["total_order"], found["first_order"])
-
-
-def test_the_share_that_is_missed_widens_every_interval():
+    # the share that is missed widens every interval
     unit = np.random.default_rng(0).random((200, 2))
     found = _indices(unit, unit[:, 0], "xy", missed=0.07)
     for half_width in (found["first_order_interval"], found["total_order_interval"]):
         np.testing.assert_allclose(half_width, 0.07, atol=1e-9)
+    # a constant has no indices
+    unit = np.random.default_rng(0).random((50, 2))
+    chaos = Chaos(np.zeros((1, 2), dtype=int), np.array([3.0]), (UNIT, UNIT))
+    pull = influence(chaos, unit, unit[:, 0], np.arange(50), 0.0)
+    found = indices(chaos, ["x", "y"], pull, 0.0, 0.95)
+    assert np.isnan(found["first_order"]).all()
+    assert np.isnan(found["total_order_interval"]).all()
 
 
 @pytest.mark.parametrize("copies", [1, 4])
@@ -131,12 +130,3 @@ def test_the_error_on_runs_held_out_is_what_scatters():
     one, other = (_indices(unit, values, "xy", rmse) for rmse in (0.01, 0.03))
     np.testing.assert_allclose(other["first_order_interval"], 3 * one["first_order_interval"])
     assert (one["first_order_interval"] > 0).all()
-
-
-def test_a_constant_has_no_indices():
-    unit = np.random.default_rng(0).random((50, 2))
-    chaos = Chaos(np.zeros((1, 2), dtype=int), np.array([3.0]), (UNIT, UNIT))
-    pull = influence(chaos, unit, unit[:, 0], np.arange(50), 0.0)
-    found = indices(chaos, ["x", "y"], pull, 0.0, 0.95)
-    assert np.isnan(found["first_order"]).all()
-    assert np.isnan(found["total_order_interval"]).all()

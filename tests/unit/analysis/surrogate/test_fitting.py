@@ -24,6 +24,15 @@ def test_whole_blocks_of_saltelli_are_held_out(drawn_runs):
     assert (blocks == blocks[:, :1]).all()
     assert sorted(np.bincount(blocks[:, 0])) == [12, 13, 13, 13, 13]
     assert np.array_equal(sample.tests, np.arange(512)), "a small sample is tested as a whole"
+    # of many held out runs some are tested
+    sample = Divided.of(drawn_runs(base_samples=4096, peak_force=first))
+    assert sample.tests.size == 4000 == np.unique(sample.tests).size
+    assert (sample.part[sample.tests] == 0).all()
+    # groups stand for their parameters
+    runs = drawn_runs(peak_force=first)
+    assert Divided.of(runs).sample.factors == ("velocity", "beam_depth", "beam_yield_stress")
+    grouped = Divided.of(runs.assign_attrs(groups=["impact", "beam", "beam"]))
+    assert grouped.sample.factors == ("impact", "beam")
 
 
 @pytest.mark.parametrize(
@@ -51,26 +60,11 @@ def test_the_seed_of_the_study_chooses(drawn_runs, seed):
     assert not np.array_equal(held_out(seed), held_out(seed + 1))
 
 
-def test_of_many_held_out_runs_some_are_tested(drawn_runs):
-    sample = Divided.of(drawn_runs(base_samples=4096, peak_force=first))
-    assert sample.tests.size == 4000 == np.unique(sample.tests).size
-    assert (sample.part[sample.tests] == 0).all()
-
-
-def test_groups_stand_for_their_parameters(drawn_runs):
-    runs = drawn_runs(peak_force=first)
-    assert Divided.of(runs).sample.factors == ("velocity", "beam_depth", "beam_yield_stress")
-    grouped = Divided.of(runs.assign_attrs(groups=["impact", "beam", "beam"]))
-    assert grouped.sample.factors == ("impact", "beam")
-
-
 def test_runs_that_are_no_whole_sample_are_refused(drawn_runs):
     runs = drawn_runs(peak_force=first).isel(run=slice(0, 500))
     with pytest.raises(ValueError, match=r"'synthetic' has 500 runs, .* method sobol: solve"):
         Divided.of(runs)
-
-
-def test_what_counts_as_a_sample(drawn_runs):
+    # what counts as a sample
     runs = drawn_runs(peak_force=first)
     assert applies(runs)
     grid = xr.Dataset(coords={"velocity": [1.0, 2.0]}, attrs={"varied": ["velocity"]})
@@ -100,6 +94,17 @@ def test_polynomials_are_met_exactly(random):
     np.testing.assert_allclose(
         fitted(unit, polynomial(unit), 0)(other), polynomial(other), rtol=1e-10
     )
+    # terms that do not help are left out
+    unit = random.random((400, 3))
+    noisy = unit[:, 0] + 0.05 * random.standard_normal(400)
+    chaos = fitted(unit, noisy, 0)
+    assert len(chaos.degrees) < 12
+    assert [1, 0, 0] in chaos.degrees.tolist()
+    # Four levels, as of Morris: a fourth degree would be one of the lower ones again.
+    unit = random.integers(0, 4, (300, 2)) / 3
+    chaos = fitted(unit, np.sin(5 * unit[:, 0]) + unit[:, 1], 0)
+    assert chaos.degrees.max() <= 3
+    np.testing.assert_allclose(chaos(unit), np.sin(5 * unit[:, 0]) + unit[:, 1], atol=1e-9)
 
 
 def test_predictions_are_those_of_scikit_learn_on_the_same_terms(random):
@@ -111,22 +116,6 @@ def test_predictions_are_those_of_scikit_learn_on_the_same_terms(random):
     )
     model = LinearRegression(fit_intercept=False).fit(columns, bent(unit))
     np.testing.assert_allclose(chaos(other), model.predict(others), rtol=1e-10)
-
-
-def test_terms_that_do_not_help_are_left_out(random):
-    unit = random.random((400, 3))
-    noisy = unit[:, 0] + 0.05 * random.standard_normal(400)
-    chaos = fitted(unit, noisy, 0)
-    assert len(chaos.degrees) < 12
-    assert [1, 0, 0] in chaos.degrees.tolist()
-
-
-def test_few_levels_bound_the_degree(random):
-    """Four levels, as of Morris: a fourth degree would be one of the lower ones again."""
-    unit = random.integers(0, 4, (300, 2)) / 3
-    chaos = fitted(unit, np.sin(5 * unit[:, 0]) + unit[:, 1], 0)
-    assert chaos.degrees.max() <= 3
-    np.testing.assert_allclose(chaos(unit), np.sin(5 * unit[:, 0]) + unit[:, 1], atol=1e-9)
 
 
 def test_terms_that_the_runs_cannot_tell_apart_do_no_harm(random):
@@ -142,6 +131,15 @@ def test_a_small_change_of_a_large_value_is_seen(random):
     unit, other = random.random((200, 2)), random.random((50, 2))
     found = fitted(unit, 1e6 + bent(np.c_[unit, unit[:, :1]]), 0)(other) - 1e6
     assert np.abs(found - bent(np.c_[other, other[:, :1]])).max() < 0.1
+    # the same runs give the same bits
+    unit = random.random((300, 3))
+    one, other = fitted(unit, bent(unit), 1), fitted(unit, bent(unit), 1)
+    assert one.coefficients.tobytes() == other.coefficients.tobytes()
+    assert one.degrees.tobytes() == other.degrees.tobytes()
+    # too few runs are refused
+    unit = random.random((15, 3))
+    with pytest.raises(ValueError, match=r"15 runs are too few .* 3 parameters: solve 16 or more"):
+        fitted(unit, unit[:, 0], 0)
 
 
 @pytest.mark.parametrize("seed", [0, 5])
@@ -151,13 +149,6 @@ def test_of_many_runs_the_seed_chooses(seed):
     assert np.array_equal(rows, drawn(3 * MOST_RUNS, seed))
     assert not np.array_equal(rows, drawn(3 * MOST_RUNS, seed + 1))
     assert np.array_equal(drawn(10, seed), np.arange(10))
-
-
-def test_the_same_runs_give_the_same_bits(random):
-    unit = random.random((300, 3))
-    one, other = fitted(unit, bent(unit), 1), fitted(unit, bent(unit), 1)
-    assert one.coefficients.tobytes() == other.coefficients.tobytes()
-    assert one.degrees.tobytes() == other.degrees.tobytes()
 
 
 @pytest.mark.parametrize("unit_of_response", [1e-9, 1e9])
@@ -175,9 +166,3 @@ def test_processors_do_not_matter(random, threads):
         found = fitted(unit, bent(unit), 1).coefficients
     with threadpool_limits(limits=1):
         assert fitted(unit, bent(unit), 1).coefficients.tobytes() == found.tobytes()
-
-
-def test_too_few_runs_are_refused(random):
-    unit = random.random((15, 3))
-    with pytest.raises(ValueError, match=r"15 runs are too few .* 3 parameters: solve 16 or more"):
-        fitted(unit, unit[:, 0], 0)

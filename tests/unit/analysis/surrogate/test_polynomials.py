@@ -81,10 +81,7 @@ def test_a_power_law_is_straight_at_the_bounds_of_a_truncated_normal():
     chaos = fit(inputs, response(inputs), 0, polynomials)
     bounds = np.array([[270e6, 0.5], [420e6, 0.5], [270e6, 0.0], [420e6, 1.0]])
     np.testing.assert_allclose(chaos(bounds), response(bounds), rtol=1e-6)
-
-
-def test_indices_are_exact_under_the_distributions():
-    """The variances of the parts of a sum are known by quadrature."""
+    # The variances of the parts of a sum are known by quadrature.
     _, inputs, polynomials, response = _stress(YIELD, 1)
     chaos = fit(inputs, response(inputs), 0, polynomials)
     pull = influence(chaos, inputs, response(inputs), np.arange(len(inputs)), 0.0)

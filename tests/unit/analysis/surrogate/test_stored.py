@@ -64,6 +64,17 @@ def test_a_prediction_carries_unit_and_error(loaded):
     assert attrs["verdict"] == "usable"
     assert 0.999 < attrs["q2"] <= 1
     assert found["velocity"].item() == 9.0
+    # no surrogate no number
+    found = loaded.predict(**POINT)["restitution"]
+    assert np.isnan(found)
+    assert found.attrs["verdict"] == "constant"
+    # units of parameters
+    assert loaded.units("beam_yield_stress") == "Pa"
+    with pytest.raises(ValueError, match="gravity: was not varied"):
+        loaded.units("gravity")
+    # a missing parameter is named
+    with pytest.raises(ValueError, match=r"^beam_depth, beam_yield_stress: no value is given"):
+        loaded.predict(velocity=9.0)
 
 
 def test_a_prediction_smaller_than_its_error_is_not_usable(loaded, capsys, monkeypatch):
@@ -106,12 +117,6 @@ def test_a_file_with_the_polynomials_of_an_earlier_version_is_refused(
         packed(runs, found.drop_vars("surrogate_error"))
 
 
-def test_no_surrogate_no_number(loaded):
-    found = loaded.predict(**POINT)["restitution"]
-    assert np.isnan(found)
-    assert found.attrs["verdict"] == "constant"
-
-
 def test_values_are_broadcast(loaded):
     speeds = xr.DataArray([6.0, 9.0, 12.0], dims="velocity")
     depths = xr.DataArray([0.0265, 0.0271], dims="depth")
@@ -122,9 +127,7 @@ def test_values_are_broadcast(loaded):
     listed = loaded.predict(**POINT | {"velocity": [6.0, 9.0]})["peak_force"]
     assert listed.dims == ("point",)
     assert listed[1].item() == pytest.approx(one.item(), rel=1e-12)
-
-
-def test_many_points_are_those_one_by_one(loaded):
+    # many points are those one by one
     speeds = np.linspace(5.0, 15.0, 10_000)
     found = loaded.predict(**POINT | {"velocity": speeds})["peak_force"].values
     for at in (0, 4095, 4096, 9999):
@@ -150,11 +153,6 @@ def test_what_it_does_not_know_is_refused(loaded, change, words):
         loaded.predict(**POINT | change)
 
 
-def test_a_missing_parameter_is_named(loaded):
-    with pytest.raises(ValueError, match=r"^beam_depth, beam_yield_stress: no value is given"):
-        loaded.predict(velocity=9.0)
-
-
 def test_ranges_are_bounds_or_extreme_draws(drawn_runs):
     """A normal has no bounds: beyond its draws nothing is known."""
     normal = {"distribution": "normal", "mean": 345e6, "standard_deviation": 25e6}
@@ -166,12 +164,6 @@ def test_ranges_are_bounds_or_extreme_draws(drawn_runs):
     assert ends["lowest"].item() == drawn.min().item()
     assert ends["highest"].item() == drawn.max().item()
     assert dataset["lowest"].sel(parameter="velocity").item() == 5.0
-
-
-def test_units_of_parameters(loaded):
-    assert loaded.units("beam_yield_stress") == "Pa"
-    with pytest.raises(ValueError, match="gravity: was not varied"):
-        loaded.units("gravity")
 
 
 def test_files_that_are_none(tmp_path):

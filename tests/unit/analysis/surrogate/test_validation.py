@@ -61,6 +61,10 @@ def test_stated_errors_hold_in_the_middle():
             np.abs(rng.normal()) <= half_width(0.1, model["error"], model["error_growth"])
         )
     assert np.mean(inside) > 0.9
+    # few blocks that show no error prove little
+    values = np.random.default_rng(0).normal(size=20)
+    assert predictivity(np.zeros(20), values, np.arange(20), 20) == (1.0, 0.95)
+    assert predictivity(np.zeros(20), np.ones(20), np.arange(20), 20) == (-np.inf, -np.inf)
 
 
 @pytest.mark.parametrize("blocks", [20, 100])
@@ -74,9 +78,3 @@ def test_the_lower_end_of_the_predictivity_covers(blocks):
         assert low < q2
         below.append(low <= 0.9)
     assert np.mean(below) > 0.95
-
-
-def test_few_blocks_that_show_no_error_prove_little():
-    values = np.random.default_rng(0).normal(size=20)
-    assert predictivity(np.zeros(20), values, np.arange(20), 20) == (1.0, 0.95)
-    assert predictivity(np.zeros(20), np.ones(20), np.arange(20), 20) == (-np.inf, -np.inf)

@@ -13,9 +13,7 @@ def test_nodes_are_those_of_the_mesh_in_mm(written, mesh, flavour):
     table = decks.numbers(decks.named(written(flavour), "NODE"))
     np.testing.assert_array_equal(table[:, 0], np.arange(1, len(mesh.nodes) + 1))
     np.testing.assert_allclose(table[:, 1:], 1e3 * mesh.nodes, rtol=1e-12, atol=1e-15)
-
-
-def test_elements_are_those_of_the_mesh_each_once(written, mesh, flavour):
+    # elements are those of the mesh each once
     groups = decks.elements(written(flavour))
     every = np.concatenate(list(groups.values()))
     every = every[np.argsort(every[:, 0])]
@@ -26,9 +24,7 @@ def test_elements_are_those_of_the_mesh_each_once(written, mesh, flavour):
         which = rows[:, 0] - 1
         assert np.all(mesh.body[which] == {"BEAM": BEAM, "SPHERE": SPHERE}[body])
         assert np.all(mesh.full[which] == (kind == "FINE"))
-
-
-def test_bodies_are_made_of_their_groups(written, flavour):
+    # bodies are made of their groups
     deck = written(flavour)
     for body in ("BEAM", "SPHERE"):
         groups = {line[0] for line in decks.named(deck, "ELSET", ELSET=body).data}

@@ -145,9 +145,7 @@ def test_calculix_softens_with_kinematic_hardening(tmp_path, written, impact):
     """So the decks refuse it."""
     cards = material(written("abaqus", hardening(impact, 0.0, KINEMATIC)), "BEAM_STEEL")
     assert pulled(tmp_path, cards, [0.003, 0.006])[1] < YIELD
-
-
-def test_kinematic_hardening_is_refused_for_calculix_unless_elastic(written, impact):
+    # kinematic hardening is refused for calculix unless elastic
     this = hardening(impact, 0.0, KINEMATIC)
     with pytest.raises(ValueError, match=r"kinematic_hardening_modulus = 9000000000\.0 Pa"):
         written("calculix", this)

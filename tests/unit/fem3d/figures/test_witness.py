@@ -29,6 +29,20 @@ def test_each_side_is_the_finest_with_its_own_uncertainty(study):
     gap = witness.difference([beam], [solid])
     assert gap.value == pytest.approx(0.05)
     assert gap.uncertainty == pytest.approx(1.05 * 2 * 1.25 * 0.01 / 1.01, rel=1e-3)
+    # the table says value uncertainty and difference
+    (section,) = sections(*study)
+    table = section.tables[0]
+    assert table.head == ["Impact velocity", "3-D FE model", "Euler-Bernoulli", "Timoshenko"]
+    assert table.rows[1][1].text == "10.1 ± 1.2 %"
+    assert table.rows[1][2].detail == "+5 % against the 3-D FE model"
+    assert table.rows[1][3].detail == "−2 % against the 3-D FE model"
+    # it needs the solid beside others at three velocities
+    runs, analysis = study
+    assert witness.differ(runs)
+    assert not witness.differ(runs.isel(velocity=slice(2)))
+    assert not witness.differ(runs.sel(beam_model=["solid"]))
+    assert not witness.differ(runs.sel(beam_model=witnesses.MODELS[:2]))
+    assert not FIGURES["witness"].applies(runs.sel(beam_model=witnesses.MODELS[:2]), analysis)
 
 
 def test_the_figure_has_values_above_and_differences_below(study):
@@ -41,10 +55,7 @@ def test_the_figure_has_values_above_and_differences_below(study):
     assert shown == [pytest.approx([5.0] * 3), pytest.approx([-2.0] * 3)]
     assert FIGURES["element_size_convergence"].applies(*study)
     assert not CATALOGUE["convergence_cost"].applies(*study)
-
-
-def test_the_data_of_the_figure_are_its_numbers(study):
-    """Differences in % with their bars, at the velocities themselves."""
+    # Differences in % with their bars, at the velocities themselves.
     below = [one for one in drawn(FIGURES["witness"].plot(*study)) if "Δ" in one.panel]
     assert [one.panel for one in below[::2]] == ["Δ peak force", "Δ contact duration"]
     assert {one.y_label for one in below} == {"Difference from the 3-D FE model (%)"}
@@ -53,9 +64,7 @@ def test_the_data_of_the_figure_are_its_numbers(study):
     width = 100.0 * 1.05 * 2 * 1.25 * 0.01 / 1.01
     assert below[0].low == pytest.approx(5.0 - width, rel=1e-3)
     assert below[0].high == pytest.approx(5.0 + width, rel=1e-3)
-
-
-def test_no_curve_is_of_a_refinement_that_its_model_does_not_know(study):
+    # no curve is of a refinement that its model does not know
     figure = CATALOGUE["contact_duration"].plot(*study)
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert labels == ["Euler-Bernoulli", "Timoshenko", "3-D FE model", "slope −1/5"]
@@ -94,24 +103,6 @@ def test_a_missing_run_leaves_a_gap_and_is_counted(study):
     assert section.tables[0].rows[-1][1].text == "missing"
 
 
-def test_it_needs_the_solid_beside_others_at_three_velocities(study):
-    runs, analysis = study
-    assert witness.differ(runs)
-    assert not witness.differ(runs.isel(velocity=slice(2)))
-    assert not witness.differ(runs.sel(beam_model=["solid"]))
-    assert not witness.differ(runs.sel(beam_model=witnesses.MODELS[:2]))
-    assert not FIGURES["witness"].applies(runs.sel(beam_model=witnesses.MODELS[:2]), analysis)
-
-
-def test_the_table_says_value_uncertainty_and_difference(study):
-    (section,) = sections(*study)
-    table = section.tables[0]
-    assert table.head == ["Impact velocity", "3-D FE model", "Euler-Bernoulli", "Timoshenko"]
-    assert table.rows[1][1].text == "10.1 ± 1.2 %"
-    assert table.rows[1][2].detail == "+5 % against the 3-D FE model"
-    assert table.rows[1][3].detail == "−2 % against the 3-D FE model"
-
-
 def test_what_is_not_the_same_quantity_is_not_compared(study):
     runs = study[0].rename(peak_force="plastic_dissipation")
     runs.attrs["responses"] = ["plastic_dissipation", "contact_duration"]
@@ -146,9 +137,7 @@ def test_the_effects_multiply_to_the_whole(taken_apart):
     product = np.prod([1.0 + shares[key] for key in ("shear", "flexibility", "law")])
     assert product == pytest.approx(1.0 + shares["all"])
     assert float(found["law"].uncertainty) > float(found["shear"].uncertainty) > 0.01
-
-
-def test_their_figure_and_table(taken_apart):
+    # their figure and table
     figure = FIGURES["witness_parts"].plot(*taken_apart)
     left, right = figure.axes
     assert len(left.lines) == 4

@@ -27,9 +27,7 @@ def test_faces_fill_the_planes_of_beam_and_sphere():
     assert area(polygons[~of_beam]).sum() == pytest.approx(half_disc, rel=0.01)
     top, elements = faces(given, 2)
     assert area(top[given["body"].values[elements] == 0]).sum() == pytest.approx(390.0 * 30.0)
-
-
-def test_the_mesh_is_seen_whole_and_at_the_contact():
+    # the mesh is seen whole and at the contact
     figure = mesh.plot(solid(), beam_models())
     above, side, top = figure.axes
     assert above.get_xlim()[1] > 390.0
@@ -52,13 +50,16 @@ def test_plastic_elements_have_their_strain_in_per_cent():
     said = plastic_strain.caption(given, beam_models())
     assert f"reaches {reach:g} mm from mid-span" in said
     assert reach < 1e3 * DEPTH_OF_STRAIN + 2.0
-
-
-def test_a_run_without_plastic_strain_says_so():
+    # a run without plastic strain says so
     elastic = solid().assign(equivalent_plastic_strain=0.0 * solid()["equivalent_plastic_strain"])
     figure = plastic_strain.plot(elastic, beam_models())
     assert [text.get_text() for text in figure.axes[0].texts] == ["no plastic strain"]
     assert "There is none." in plastic_strain.caption(elastic, beam_models())
+    # alternative texts count cells and place the largest strain
+    said = alt(plastic_strain.plot(solid(), beam_models()))
+    assert "coloured cell" in said
+    assert "the largest value at 1, −1" in said
+    assert "Top of the beam: " in alt(mesh.plot(solid(), beam_models()))
 
 
 def test_histories_are_the_stored_values_in_the_axes_units():
@@ -86,10 +87,3 @@ def test_every_figure_lands_with_caption_and_alternative_text(tmp_path):
         assert entry["caption"]
         assert entry["alt"]
     assert (tmp_path / "histories.csv").exists()
-
-
-def test_alternative_texts_count_cells_and_place_the_largest_strain():
-    said = alt(plastic_strain.plot(solid(), beam_models()))
-    assert "coloured cell" in said
-    assert "the largest value at 1, −1" in said
-    assert "Top of the beam: " in alt(mesh.plot(solid(), beam_models()))

@@ -47,9 +47,7 @@ def test_planes_and_supports_are_held(ready, mesh):
         variable = ready.engine.variable(f"DISPLACEMENT_{axis}")
         fixed = [node.Id - 1 for node in ready.part.Nodes if node.IsFixed(variable)]
         assert fixed == sorted(nodes.tolist())
-
-
-def test_only_the_sphere_moves_and_falls(ready, mesh):
+    # only the sphere moves and falls
     below = mesh.nodes[:, 2] < 0.0
     for name, expected in (("VELOCITY_Z", -990.0), ("VOLUME_ACCELERATION_Z", -9810.0)):
         values = node_values(ready.engine, ready.part, name)

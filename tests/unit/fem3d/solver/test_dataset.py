@@ -37,15 +37,11 @@ def test_what_the_beam_models_answer_too_has_the_same_names_and_units(answer):
     assert float(answer["velocity"]) == 5.0
     assert "nodes" not in answer.coords
     assert "contact" not in answer.coords
-
-
-def test_everything_has_a_unit_and_a_name(answer):
+    # everything has a unit and a name
     for name, variable in answer.variables.items():
         if name not in ("axis", "status"):
             assert {"units", "long_name"} <= set(variable.attrs), name
-
-
-def test_what_is_missing_has_a_reason(answer):
+    # what is missing has a reason
     bits = int(answer["status"])
     reasons = {name for name, (bit, _) in STATUS_FLAGS.items() if bits & bit}
     assert reasons == {
@@ -77,9 +73,7 @@ def test_fields_lie_on_the_mesh(answer, mesh):
     assert stress.max() > 0.9 * 345e6
     assert float(answer["plastic_zone_length"]) >= 4e-3
     assert 0.0 < float(answer["node_offset"]) < 0.5
-
-
-def test_histories_belong_together(answer):
+    # histories belong together
     np.testing.assert_allclose(
         answer["indentation"], answer["sphere_displacement"] - answer["midspan_deflection"]
     )

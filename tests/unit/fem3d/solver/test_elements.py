@@ -30,11 +30,7 @@ def test_a_constant_strain_is_met_by_hookes_stress(make_body, distorted, kind):
     hooke = six(2 * G * strain + (K - 2 / 3 * G) * np.trace(strain) * np.eye(3))
     error = body.stress() - hooke[:, None, None]
     assert np.abs(error).max() < 1e-6 * np.abs(hooke).max()  # the strain is finite
-
-
-def test_a_constant_strain_is_the_same_everywhere_and_leaves_no_force_inside(
-    make_body, distorted, kind
-):
+    # a constant strain is the same everywhere and leaves no force inside
     nodes, elements, inside = distorted
     body = make_body(nodes, elements, kind)
     forces = body.move_to(nodes + nodes @ (1e4 * GRADIENT).T)
@@ -42,10 +38,7 @@ def test_a_constant_strain_is_the_same_everywhere_and_leaves_no_force_inside(
     assert spread.max() < 1e-10 * np.abs(body.stress()).max()
     assert np.abs(forces[inside]).max() < 1e-10 * np.abs(forces).max()
     assert np.abs(forces.sum(axis=0)).max() < 1e-10 * np.abs(forces).max()
-
-
-def test_work_of_the_forces_is_the_work_in_the_elements(make_body, distorted, kind):
-    """A motion that strains and hourglasses: half the last forces' work, as forces began at 0."""
+    # A motion that strains and hourglasses: half the last forces' work, as forces began at 0.
     nodes, elements, _ = distorted
     body = make_body(nodes, elements, kind)
     motion = 1e-7 * np.random.default_rng(2).standard_normal(nodes.shape)
@@ -62,10 +55,7 @@ def test_a_translation_strains_nothing(make_body, distorted, kind):
     forces = body.move_to(nodes + np.array([3.0, -2.0, 5.0]))
     assert np.abs(body.stress()).max() < 1e-12 * G
     assert np.abs(forces).max() < 1e-12 * G
-
-
-def test_a_quarter_turn_strains_nothing_to_the_third_order_of_the_step(make_body, distorted, kind):
-    nodes, elements, _ = distorted
+    # a quarter turn strains nothing to the third order of the step
     left = []
     for steps in (50, 100):
         body = make_body(nodes, elements, kind)

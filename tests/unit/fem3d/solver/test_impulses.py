@@ -73,6 +73,10 @@ def test_a_gap_is_left_alone():
     assert patch.close()[:3] == (0.0, 0.0, 0.0)
     assert np.array_equal(patch.x, before)
     assert not patch.closing.any()
+    # a bulge touches before the nodes
+    patch = Patch(0.001, bulge=0.003)
+    patch.close()
+    np.testing.assert_allclose(patch.gap, 0.003, rtol=1e-12)
 
 
 @pytest.mark.parametrize("edge", [0.3, 0.7, 1.0, 1.45, 1.9])
@@ -85,12 +89,6 @@ def test_the_force_grows_with_the_part_of_a_face_that_touches(edge):
     patch.close()
     area = np.where(X == 1, 1.0, 0.5) * np.where(Y == 1, 1.0, 0.5)
     assert np.sum(area * patch.closing) == pytest.approx(0.01 * edge**2, abs=2e-4)
-
-
-def test_a_bulge_touches_before_the_nodes():
-    patch = Patch(0.001, bulge=0.003)
-    patch.close()
-    np.testing.assert_allclose(patch.gap, 0.003, rtol=1e-12)
 
 
 def test_bulges_are_what_a_sphere_has_below_its_faces():

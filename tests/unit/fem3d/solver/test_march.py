@@ -39,9 +39,7 @@ def test_beam_and_sphere_exchange_momentum_and_lose_none(mesh, marched):
     start = -5.0 * IMPACT.sphere.total_mass / 4
     assert of[BEAM] + of[SPHERE] == pytest.approx(start, rel=1e-12)
     assert of[BEAM] < 0.02 * start
-
-
-def test_the_force_of_the_steps_is_what_slows_the_sphere(mesh, marched):
+    # the force of the steps is what slows the sphere
     system, history = marched
     time, force, sphere, *_, velocity = history.table()
     ball = np.unique(mesh.elements[mesh.body == SPHERE])
@@ -51,9 +49,7 @@ def test_the_force_of_the_steps_is_what_slows_the_sphere(mesh, marched):
     step = time[-1] - time[-2]
     assert sphere[-1] + step * velocity[-1] == pytest.approx(centre, rel=1e-10)
     assert force.max() > 1e3
-
-
-def test_energy_balances_while_steel_flows_and_gaps_close(marched):
+    # energy balances while steel flows and gaps close
     _, history = marched
     balance = np.array([entry.balance for entry in history.energies])
     first = 0.5 * IMPACT.sphere.total_mass * 25.0
@@ -86,16 +82,13 @@ def test_what_is_interrupted_is_kept(mesh):
     assert float(answer["contact_force"].max()) > 0.0
     assert float(answer["checkpoint_time"][-1]) < 9e-6
 
-
-def test_what_is_interrupted_before_there_is_anything_is_not_kept(mesh):
+    # what is interrupted before there is anything is not kept
     def stop(*_):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         solve_on(mesh, IMPACT, duration=1e-6, progress=stop)  # a hundredth of it is no step
-
-
-def test_less_than_a_step_is_refused(mesh):
+    # less than a step is refused
     with pytest.raises(ValueError, match=r"solve\.duration = 1e-08 s: must be longer than a step"):
         solve_on(mesh, IMPACT, duration=1e-8)
 

@@ -30,10 +30,7 @@ def test_within_the_yield_surface_nothing_happens():
     assert s == trial
     assert a == NONE
     assert dp == along == 0.0
-
-
-def test_one_step_beyond_yield_in_shear():
-    """tau = G gamma_e, yield at sigma/sqrt(3); slope 3 G/(3 G + H) of the stress left."""
+    # tau = G gamma_e, yield at sigma/sqrt(3); slope 3 G/(3 G + H) of the stress left.
     H_i, H_k, p = 3e9, 7e9, 0.01
     trial = (0.0, 0.0, 0.0, 4e8, 0.0, 0.0)
     s, a, dp, along = radial_return(trial, NONE, p, metal(steel(H_i, H_k)))
@@ -44,9 +41,7 @@ def test_one_step_beyond_yield_in_shear():
     assert along == 0.0
     left = tuple(one - other for one, other in zip(s, a, strict=True))
     assert mises(left) == pytest.approx(SIGMA + H_i * (p + dp), rel=1e-14)
-
-
-def test_a_return_goes_straight_to_the_surfaces_centre():
+    # a return goes straight to the surfaces centre
     trial, back = (
         np.array([5e8, -3e8, -2e8, 1e8, -4e8, 2e8]),
         np.array([4e7, 1e7, -5e7, 3e7, 0.0, 6e7]),

@@ -66,16 +66,12 @@ def test_beam_fills_its_quarter_and_the_sphere_nearly_so(mesh):
     fine = quarter_mesh(paper_impact(), element_size=0.75e-3, coarsest=DEPTH / 12)
     finer = 1.0 - volumes(fine)[fine.body == SPHERE].sum() / ball
     assert 0.0 < finer < coarse < 0.02
-
-
-def test_every_node_is_used_and_no_two_are_in_one_place(mesh):
+    # every node is used and no two are in one place
     assert np.array_equal(np.unique(mesh.elements), np.arange(len(mesh.nodes)))
     for body in (BEAM, SPHERE):
         own = mesh.nodes[np.unique(mesh.elements[mesh.body == body])]
         assert len(np.unique(np.round(own, 9), axis=0)) == len(own)
-
-
-def test_elements_conform_and_outer_faces_are_where_the_bodies_end(mesh):
+    # elements conform and outer faces are where the bodies end
     x, y, z = mesh.nodes[outside(mesh, BEAM)].transpose(2, 0, 1)
     ends = [(x, 0.0), (x, SPAN / 2), (y, 0.0), (y, WIDTH / 2), (z, 0.0), (z, -DEPTH)]
     on = [np.all(np.abs(value - end) < 1e-12, axis=1) for value, end in ends]
@@ -105,9 +101,7 @@ def test_pairs_share_their_place_and_gap_as_a_sphere_does(mesh):
         np.abs(mesh.nodes[:, 2]) < 1e-15
     )
     assert inside.sum() == len(mesh.pairs) + 1  # the pole, too, is at z = 0
-
-
-def test_named_nodes_are_where_they_should_be(mesh):
+    # named nodes are where they should be
     assert np.all(mesh.nodes[mesh.symmetry_x, 0] == 0.0)
     assert np.all(mesh.nodes[mesh.symmetry_y, 1] == 0.0)
     np.testing.assert_allclose(
@@ -124,11 +118,6 @@ def test_an_inverted_element_is_named(mesh):
     nodes[mesh.axis_node, 2] += 0.02
     with pytest.raises(ValueError, match=r"inverted.*smaller element_size"):
         replace(mesh, nodes=nodes)
-
-
-def test_a_patch_beyond_the_bodies_is_refused():
-    with pytest.raises(ValueError, match=r"mesh\.patch = 0\.0"):
-        quarter_mesh(paper_impact(), element_size=1e-3, patch=0.02)
 
 
 @pytest.mark.parametrize("depth", [4.002, 4.2, 6.02, 6.9, 7.37, 8.3, 10.1, 27.8])
@@ -150,6 +139,9 @@ def test_an_estimated_patch_gives_up_its_margin_where_the_bodies_end():
     assert contact_radius(narrower) > 0.9 * 0.01
     with pytest.raises(ValueError, match=r"must be at most 0\.009 m to fit"):
         quarter_mesh(narrower, element_size=1e-3)
+    # a patch beyond the bodies is refused
+    with pytest.raises(ValueError, match=r"mesh\.patch = 0\.0"):
+        quarter_mesh(paper_impact(), element_size=1e-3, patch=0.02)
 
 
 def test_a_faster_impact_has_a_wider_patch_and_its_middle_fully_integrated():

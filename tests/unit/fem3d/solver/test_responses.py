@@ -22,13 +22,9 @@ def test_a_contact_at_the_end_has_no_end():
     assert np.isnan(contacts(time, np.ones(10), 0.25)[0, 1])
     force = np.where(time < 0.85, 1.0, 0.0)
     assert np.isnan(contacts(time, force, 0.25)[0, 1])
-
-
-def test_no_contact():
+    # no contact
     assert contacts(np.arange(3.0), np.zeros(3), 1.0).shape == (0, 2)
-
-
-def test_a_parabolas_peak_is_exact_between_steps():
+    # a parabolas peak is exact between steps
     time = np.linspace(0.0, 1.0, 12)
     at, largest = peak(time, 5.0 - 3.0 * (time - 0.337) ** 2)
     assert at == pytest.approx(0.337, rel=1e-12)
@@ -61,19 +57,14 @@ def planted():
 def test_the_line_is_followed_down_to_the_limit(planted):
     assert plastic_reach(planted(20e-3), 0, limit=0.002) == pytest.approx(16e-3)
     assert plastic_reach(planted(20e-3), 0, limit=0.005) == pytest.approx(10e-3)
-
-
-def test_depth_is_followed_below_the_centre(planted):
-    """Elements of 2 mm: a strain that falls by 0.1 % per mm, from 1 % at the surface."""
+    # Elements of 2 mm: a strain that falls by 0.1 % per mm, from 1 % at the surface.
     run = planted(1e3)
     depth = -run["node_position"].values[run["element_nodes"].values][:, :, 2].mean(axis=1)
     strain = 0.01 - depth
     found = plastic_reach(run.assign(equivalent_plastic_strain=("element", strain)), 2, limit=0.004)
     assert found == pytest.approx(6e-3)
     assert plastic_reach(planted(1e3, peak=0.001), 2) == 0.0
-
-
-def test_no_zone_and_a_whole_beam_of_it(planted):
+    # no zone and a whole beam of it
     assert plastic_reach(planted(20e-3, peak=0.001), 0) == 0.0
     everywhere = plastic_reach(planted(1e3), 0)
     assert everywhere == pytest.approx(0.39, abs=3e-3)

@@ -49,9 +49,7 @@ def test_pieces_share_no_row():
         for piece in range(MOST_THREADS)
     ]
     assert sum(map(len, pieces)) == len(set().union(*pieces)) == rows.count
-
-
-def test_blocks_are_all_shared_out_in_their_order():
+    # blocks are all shared out in their order
     _, (_, group) = two_groups()
     ends = [blocks_of(len(group.nodes), piece, MOST_THREADS) for piece in range(MOST_THREADS)]
     assert ends[0][0] == 0
