@@ -26,12 +26,6 @@ def declared():
     return [entry for entry in requirements if entry.name != "impactlab"]
 
 
-def test_constraints_hold_pins_and_nothing_else():
-    """No option, address or path of whoever made them."""
-    pin = re.compile(r"[a-z0-9-]+==[\w.]+( ; [\w\s=<>!.']+)?")
-    assert [line for line in PINS if not pin.fullmatch(line)] == []
-
-
 @pytest.mark.parametrize("requirement", declared(), ids=lambda entry: entry.name)
 def test_every_dependency_is_pinned_within_its_bounds(requirement):
     pins = {canonicalize_name(pin.name): pin.specifier for pin in map(Requirement, PINS)}
@@ -46,9 +40,10 @@ def test_citation_and_changelog_agree_with_the_project():
     assert citation["keywords"] == PROJECT["keywords"]
     assert citation["authors"] == PROJECT["authors"]
     assert f"\n## {PROJECT['version']} " in (ROOT / "CHANGELOG.md").read_text()
-
-
-def test_conda_environment_has_the_same_python():
+    # No option, address or path of whoever made them.
+    pin = re.compile(r"[a-z0-9-]+==[\w.]+( ; [\w\s=<>!.']+)?")
+    assert [line for line in PINS if not pin.fullmatch(line)] == []
+    # conda environment has the same python
     packages = YAML(typ="safe").load(ROOT / "environment.yaml")["dependencies"]
     assert f"python{PROJECT['requires-python']}" in packages
 

@@ -46,9 +46,7 @@ def test_the_package_names_its_public_names_and_version():
     stub = (ROOT / "impactlab" / "__init__.pyi").read_text(encoding="utf-8")
     assert dir(il) == sorted(re.findall(r"import \w+ as (\w+)", stub))
     assert set(dir(il)) <= set(re.findall(r"\w+", il.__doc__))
-
-
-def test_help_fits_two_screens_and_the_public_names_come_first():
+    # help fits two screens and the public names come first
     told = pydoc.plain(pydoc.render_doc(il))
     assert told.count("\n") < 90
     assert told.index("load_surrogate") < told.index("PACKAGE CONTENTS")

@@ -45,9 +45,7 @@ def test_every_file_is_described_with_size_and_hash(folder, graph):
         assert graph[name]["contentSize"] == str(len(content))
         assert graph[name]["sha256"] == hashlib.sha256(content).hexdigest()
     assert {entry["@id"] for entry in graph["./"]["hasPart"]} == files
-
-
-def test_it_says_what_made_the_files(folder, graph):
+    # it says what made the files
     attrs = read_netcdf(folder / "runs.nc", "runs").attrs
     assert (folder / "solved_study.yaml").read_text("utf-8") == attrs["study_text"]
     assert graph["ro-crate-metadata.json"]["about"] == {"@id": "./"}
@@ -61,8 +59,7 @@ def test_it_says_what_made_the_files(folder, graph):
     assert graph[software["author"]["@id"]]["name"] == citation["authors"][0]["name"]
     assert graph[software["license"]["@id"]]["name"] == citation["license"]
 
-
-def test_every_reference_is_described(graph):
+    # every reference is described
     def references(value):
         if isinstance(value, list):
             return set().union(*map(references, value))

@@ -74,6 +74,13 @@ def test_a_growing_sample_costs_its_largest_size():
     less = estimate(fewer, NOWHERE, 1)
     assert less.runs == 1024 * 6
     assert found.seconds == pytest.approx(less.seconds * 20_000 / 6144, rel=0.1)
+    # a function costs next to nothing
+    ranges = ", ".join(f"x{at}: {{distribution: uniform, low: 0, high: 1}}" for at in (1, 2, 3))
+    sampling = f"{{method: delta, samples: 1000000, parameters: {{{ranges}}}}}"
+    text = f"title: F\nfunction: ishigami\nsampling: {sampling}"
+    found = estimate(study_of_text("some", text), NOWHERE, 2)
+    assert found.seconds < 10
+    assert found.disk < 1e9
 
 
 def test_memory_and_disk_are_those_of_the_answers():
@@ -126,12 +133,3 @@ def test_shards_already_on_disk_count_as_available(tmp_path, monkeypatch):
     study = grid(NODES)
     assert estimate(study, tmp_path, 1).free == 1500
     assert estimate(study, tmp_path / "fresh" / "folder", 1).free == 1000
-
-
-def test_a_function_costs_next_to_nothing():
-    ranges = ", ".join(f"x{at}: {{distribution: uniform, low: 0, high: 1}}" for at in (1, 2, 3))
-    sampling = f"{{method: delta, samples: 1000000, parameters: {{{ranges}}}}}"
-    text = f"title: F\nfunction: ishigami\nsampling: {sampling}"
-    found = estimate(study_of_text("some", text), NOWHERE, 2)
-    assert found.seconds < 10
-    assert found.disk < 1e9

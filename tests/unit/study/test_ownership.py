@@ -118,6 +118,9 @@ def test_a_study_of_the_same_runs_takes_them_over(folder):
 def test_unchanged_runs_leave_the_report(folder):
     done("run", "studies/ishigami.yaml", cwd=folder)
     assert all(Path("results/ishigami", name).exists() for name in MADE)
+    # a report is no pdf
+    with pytest.raises(ValueError, match=r"^path = 'r.pdf': is written as HTML: its name must end"):
+        il.Study.from_yaml("studies/ishigami.yaml").report("r.pdf")
 
 
 def test_a_calibration_by_the_runs_before_goes(folder):
@@ -137,9 +140,7 @@ def test_tidying_up_leaves_the_runs_of_another_study(folder):
     python(samples=256).run(workers=1, replace=True)
     with removable(Path("studies"), Path("results")) as files:
         assert files == {}
-
-
-def test_the_index_lists_no_report_of_other_runs(folder):
+    # the index lists no report of other runs
     report = Path("results/ishigami/report.html")
     text = report.read_text()
     python(samples=256).run(workers=1, replace=True)
@@ -165,8 +166,3 @@ def test_the_start_page_has_one_study_twice(tmp_path):
     built: dict = {"il": il}
     exec(re.search(r"(study = il\.Study\(.*?\n\))\n", page, re.S)[1], built)
     assert same_runs(built["study"].declared, il.Study.from_yaml(file).declared.attributes())
-
-
-def test_a_report_is_no_pdf(folder):
-    with pytest.raises(ValueError, match=r"^path = 'r.pdf': is written as HTML: its name must end"):
-        il.Study.from_yaml("studies/ishigami.yaml").report("r.pdf")

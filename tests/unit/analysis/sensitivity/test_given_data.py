@@ -182,7 +182,7 @@ def test_intervals_of_pawn_hold_the_index_of_endless_runs(drawn):
     assert np.mean(held) > 0.9
 
 
-def test_regression_of_a_linear_model(drawn, normal):
+def test_regression_of_a_linear_model(drawn, normal, verdicts_of):
     """Standardised coefficients, to the departure of the sample from unit variance."""
     outputs = normal @ WEIGHTS + 0.01 * np.random.default_rng(1).normal(size=500)
     found = sensitivity.analysis(drawn("regression", normal, outputs)).isel(response=0)
@@ -191,10 +191,7 @@ def test_regression_of_a_linear_model(drawn, normal):
     np.testing.assert_allclose(found["regression_r_squared"], 1, atol=1e-3)
     assert abs(found["dummy_regression"]) < 1e-3
     assert (found["regression_interval"] < 0.1).all()
-
-
-def test_regression_with_noise_of_known_error(drawn, normal):
-    """R^2 and the error of a coefficient, sqrt((1 - R^2)/n), by the textbook."""
+    # R^2 and the error of a coefficient, sqrt((1 - R^2)/n), by the textbook.
     outputs = normal @ WEIGHTS + np.sqrt(5) * np.random.default_rng(1).normal(size=500)
     found = sensitivity.analysis(drawn("regression", normal, outputs, resamples=1000))
     design = np.column_stack([np.ones(500), normal])
@@ -205,9 +202,7 @@ def test_regression_with_noise_of_known_error(drawn, normal):
     np.testing.assert_allclose(found["regression_r_squared"][0], share, rtol=1e-10)
     error = 1.96 * np.sqrt((1 - share) / 500)
     np.testing.assert_allclose(found["regression_interval"][0, 2], error, rtol=0.15)
-
-
-def test_ranks_see_through_a_monotone_function(drawn, normal, verdicts_of):
+    # ranks see through a monotone function
     found = sensitivity.analysis(drawn("regression", normal[:, :1], np.exp(3 * normal[:, 0])))
     np.testing.assert_allclose(found["rank_regression"], 1.0, atol=1e-12)
     np.testing.assert_allclose(found["rank_regression_r_squared"], 1.0, atol=1e-12)
@@ -216,9 +211,7 @@ def test_ranks_see_through_a_monotone_function(drawn, normal, verdicts_of):
     alone = sensitivity.analysis(drawn("regression", normal[:, :1], outputs))["rank_regression"]
     rank = spearmanr(normal[:, 0], outputs).statistic
     np.testing.assert_allclose(alone[0, 0], rank, atol=1e-12)  # of a single one they are the same
-
-
-def test_regression_that_describes_nothing_says_so(drawn, normal, verdicts_of):
+    # regression that describes nothing says so
     found = sensitivity.analysis(drawn("regression", normal, normal[:, 0] ** 2))
     assert verdicts_of(found["sensitivity_verdict"]) == ["not_linear"]
 

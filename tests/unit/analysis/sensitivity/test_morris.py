@@ -31,6 +31,21 @@ def test_linear_function_is_exact(drawn):
     assert found["morris_mu"].dims == ("parameter",)
     assert "units" not in found["morris_mu"].attrs  # those of the response
     assert found["response_units"] == "N"
+    # And carry another last digit where they are the same.
+    unit = _unit(3)
+    physical = 1e9 + 1e8 * norm.ppf(np.clip(unit, 1e-6, 1 - 1e-6))
+    physical *= 1 + 1e-16 * np.random.default_rng(1).integers(-2, 3, size=unit.shape)
+    runs = _runs(drawn, physical, unit @ [3.0, -2.0, 0.0])
+    np.testing.assert_allclose(sensitivity.analysis(runs)["morris_mu"][0], [3, -2, 0], atol=1e-12)
+    # groups have no sign
+    groups = ["one", "other", "one"]
+    unit = _unit(3, groups)
+    runs = _runs(drawn, unit, unit @ [3.0, -2.0, 0.0], groups=groups)
+    found = sensitivity.analysis(runs).isel(response=0)
+    assert found["parameter"].values.tolist() == ["one", "other"]
+    np.testing.assert_allclose(found["morris_mu_star"], [3, 2], atol=1e-12)
+    np.testing.assert_allclose(found["morris_mu"], [np.nan, -2], atol=1e-12)
+    np.testing.assert_allclose(found["morris_sigma"], [np.nan, 0], atol=1e-12)
 
 
 def test_interaction_shows_in_sigma(drawn):
@@ -41,26 +56,6 @@ def test_interaction_shows_in_sigma(drawn):
     np.testing.assert_allclose(found["morris_mu_star"][:2], 0.5, atol=0.06)
     np.testing.assert_allclose(found["morris_sigma"][:2], np.sqrt(5 / 36), atol=0.03)
     assert found["morris_sigma"][2] == 0
-
-
-def test_inputs_may_be_of_any_distribution(drawn):
-    """And carry another last digit where they are the same."""
-    unit = _unit(3)
-    physical = 1e9 + 1e8 * norm.ppf(np.clip(unit, 1e-6, 1 - 1e-6))
-    physical *= 1 + 1e-16 * np.random.default_rng(1).integers(-2, 3, size=unit.shape)
-    runs = _runs(drawn, physical, unit @ [3.0, -2.0, 0.0])
-    np.testing.assert_allclose(sensitivity.analysis(runs)["morris_mu"][0], [3, -2, 0], atol=1e-12)
-
-
-def test_groups_have_no_sign(drawn):
-    groups = ["one", "other", "one"]
-    unit = _unit(3, groups)
-    runs = _runs(drawn, unit, unit @ [3.0, -2.0, 0.0], groups=groups)
-    found = sensitivity.analysis(runs).isel(response=0)
-    assert found["parameter"].values.tolist() == ["one", "other"]
-    np.testing.assert_allclose(found["morris_mu_star"], [3, 2], atol=1e-12)
-    np.testing.assert_allclose(found["morris_mu"], [np.nan, -2], atol=1e-12)
-    np.testing.assert_allclose(found["morris_sigma"], [np.nan, 0], atol=1e-12)
 
 
 @pytest.mark.parametrize("groups", [None, ["one", "other", "one"]])

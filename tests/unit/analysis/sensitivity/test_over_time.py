@@ -121,16 +121,6 @@ def test_too_many_failed_runs_give_no_index(oscillating, failed):
         assert found[name].dtype.kind != "f" or found[name].isnull().all()
 
 
-def test_a_history_that_is_the_same_in_all_runs_has_no_index(oscillating):
-    runs = oscillating(64)
-    round_off = 1 + 1e-13 * np.random.default_rng(1).normal(size=runs["contact_force"].shape)
-    runs["contact_force"][:] = 0.1 * TIMES * round_off
-    found = over_time.analysis(runs).isel(history=0)
-    assert found["history_verdict"] == HistoryVerdict.CONSTANT
-    assert found["generalised_total_order"].isnull().all()
-    assert (found["time_verdict"] == TimeVerdict.CONSTANT).all()
-
-
 def test_blocks_change_no_bit(oscillating, monkeypatch, tmp_path):
     runs = oscillating(333)
     sample, good = Sample.of(runs), np.arange(333) != 4
@@ -205,3 +195,11 @@ def test_only_a_sobol_sample_with_histories_has_them(oscillating):
     assert not over_time.applies(runs.drop_vars("contact_force"))
     assert not over_time.applies(runs.assign_attrs(method="delta"))
     assert "generalised_first_order" not in analyse(runs.assign_attrs(analyses="sensitivity"))
+    # a history that is the same in all runs has no index
+    runs = oscillating(64)
+    round_off = 1 + 1e-13 * np.random.default_rng(1).normal(size=runs["contact_force"].shape)
+    runs["contact_force"][:] = 0.1 * TIMES * round_off
+    found = over_time.analysis(runs).isel(history=0)
+    assert found["history_verdict"] == HistoryVerdict.CONSTANT
+    assert found["generalised_total_order"].isnull().all()
+    assert (found["time_verdict"] == TimeVerdict.CONSTANT).all()

@@ -166,13 +166,6 @@ def test_dependent_base_samples_are_marked(sample_runs):
     assert int(remarks) & masks["dependent_bases"]
 
 
-def test_a_sample_without_replicates_is_refused(sample_runs, good):
-    runs = sample_runs(NAMES, 64, peak_force=good)
-    del runs.attrs["replicates"]
-    with pytest.raises(ValueError, match=r"'synthetic' has a sample of an earlier version"):
-        sensitivity.analysis(runs)
-
-
 def test_a_small_share_is_real_and_an_unseen_parameter_is_not(sample_runs):
     """A share of 0.024 is far below the index that mean products give a dummy, yet well known."""
     unit = _sample(4, 1024, second_order=False)
@@ -294,9 +287,7 @@ def test_confidence_comes_from_the_study(sample_runs, good):
     np.testing.assert_allclose(wide / narrow, 2.364624 / 0.711142, rtol=1e-5)  # t of 7
     assert wide.attrs["confidence"] == 0.95
     assert "resamples" not in wide.attrs
-
-
-def test_order_of_runs_is_that_of_the_run_coordinate(sample_runs, good):
+    # order of runs is that of the run coordinate
     runs = sample_runs(NAMES, 64, peak_force=good)
     assert _intervals(runs.isel(run=slice(None, None, -1))) == _intervals(runs)
 
@@ -304,4 +295,9 @@ def test_order_of_runs_is_that_of_the_run_coordinate(sample_runs, good):
 def test_refuses_a_part_of_a_sample(sample_runs, good):
     runs = sample_runs(NAMES, 64, peak_force=good).isel(run=slice(0, 504))
     with pytest.raises(ValueError, match=r"'synthetic' has 504 runs, but .* make 512"):
+        sensitivity.analysis(runs)
+    # a sample without replicates is refused
+    runs = sample_runs(NAMES, 64, peak_force=good)
+    del runs.attrs["replicates"]
+    with pytest.raises(ValueError, match=r"'synthetic' has a sample of an earlier version"):
         sensitivity.analysis(runs)

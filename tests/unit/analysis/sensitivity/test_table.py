@@ -43,9 +43,13 @@ def test_every_index_has_a_row(found, tmp_path):
     assert row["verdict"] == "wide_intervals"
     assert row["units"] == "1"
     assert (row["other_parameter"], row["base_samples"]) == ("", "")
+    # what is not given is an empty cell
+    write_csv(table_rows(found), COLUMNS, tmp_path / "indices.csv")
+    lines = (tmp_path / "indices.csv").read_text("utf-8").splitlines()
+    assert "impulse,x0,,,first_order,,,,1,failed_runs" in lines
 
 
-def test_pairs_once_and_sizes(found):
+def test_pairs_once_and_sizes(found, stored):
     rows = [row for row in table_rows(found) if row["response"] == "peak_force"]
     pairs = [
         (row["parameter"], row["other_parameter"]) for row in rows if row["index"] == "second_order"
@@ -55,15 +59,7 @@ def test_pairs_once_and_sizes(found):
     assert [row["base_samples"] for row in sizes[::3]] == [8, 16, 32, 64]
     at = found["first_order_by_samples"].sel(response="peak_force", base_samples=16)
     assert [row["value"] for row in sizes[3:6]] == at.values.tolist()
-
-
-def test_what_is_not_given_is_an_empty_cell(found, tmp_path):
-    write_csv(table_rows(found), COLUMNS, tmp_path / "indices.csv")
-    lines = (tmp_path / "indices.csv").read_text("utf-8").splitlines()
-    assert "impulse,x0,,,first_order,,,,1,failed_runs" in lines
-
-
-def test_netcdf_holds_what_the_table_holds(found, stored):
+    # netcdf holds what the table holds
     kept = stored(sensitivity_variables(found))
     assert {"first_order", "first_order_interval", "sensitivity_verdict"} <= set(kept)
     assert "mean" in found
