@@ -9,7 +9,6 @@ from impactlab.solver.beam import (
     kinetic_energy,
     make_beam,
     make_grid,
-    move,
     move_virgin,
     reach,
     strike,
@@ -34,11 +33,6 @@ def mirrored(values):
     return np.concatenate([[-values[1]], values, values[-2:-4:-1]])
 
 
-def fourth_difference(values):
-    """Return that of w from the support to mid-span, at each node but the support."""
-    return np.diff(mirrored(values), 4)
-
-
 @pytest.mark.parametrize(
     ("moved", "first", "expected"),
     [(8, 8, 6), (9, 8, 6), (10, 8, 8), (3, 3, 2), (2, 2, 2)],
@@ -55,56 +49,6 @@ def test_the_front_ignores_what_would_become_denormal():
     w = np.zeros((2, N + 4))
     w[0, 8] = 1e-101
     assert reach(w, 0, 8) == 8
-
-
-@pytest.mark.parametrize("now", [0, 1])
-@pytest.mark.parametrize(("first", "stop"), [(2, MID + 1), (6, MID), (MID, MID + 1), (4, 4)])
-def test_a_virgin_step_is_the_fourth_difference(now, first, stop):
-    values = 1e-6 * np.sin(np.arange(N + 1.0))
-    beam = shaped(values, now)
-    u = beam.u[:] = np.cos(np.arange(N + 4.0))
-    here = slice(first, stop)
-    expected = u.copy()
-    expected[2 : MID + 1] -= GRID.stiffness * fourth_difference(values)
-    kappa = np.abs(np.diff(mirrored(values), 2)[: N + 2]) * GRID.per_dx2  # kappa[i - 1] at i
-    limit = np.median(kappa)
-    outside = move_virgin(beam.w, now, beam.u, first, stop, GRID, limit)
-    assert beam.u[here] == pytest.approx(expected[here], rel=1e-12)
-    assert beam.w[1 - now, here] == pytest.approx(beam.w[now, here] + expected[here], rel=1e-12)
-    assert outside == np.sum(kappa[first - 1 : stop - 1] > limit)
-    others = np.delete(np.arange(N + 4), np.arange(first, stop))
-    assert np.array_equal(beam.u[others], np.cos(others))
-    assert not beam.w[1 - now, others].any()
-
-
-@pytest.mark.parametrize("first", [2, 6, MID])
-def test_a_step_takes_each_sections_interval_and_plastic_share(first):
-    values = 1e-6 * np.sin(np.arange(N + 1.0))
-    beam = shaped(values)
-    beam.plastic[:] = 1e-7 * np.arange(N + 4)
-    kappa = np.diff(mirrored(values), 2) * GRID.per_dx2
-    kappa = np.concatenate([[0], kappa, [0]])[: N + 4]
-    low, high = kappa - 1e-6, kappa + 1e-6
-    low[[7, 9]], high[[8, MID]] = kappa[[7, 9]] + 1e-6, kappa[[8, MID]] - 1e-6
-    outside = move(beam.w, 0, beam.u, beam.plastic, low, high, first, GRID)
-    expected = np.zeros(N + 4)
-    expected[2 : MID + 1] = -GRID.stiffness * fourth_difference(values)
-    here = slice(first, MID + 1)
-    assert beam.u[here] == pytest.approx(expected[here] + beam.plastic[here], rel=1e-9)
-    assert outside == sum(i >= first for i in (7, 8, 9, MID))
-
-
-def test_the_force_moves_mid_span_and_the_ends_are_mirrored():
-    beam = make_beam(GRID)
-    beam.w[1] = np.arange(N + 4.0)
-    beam.w[1, 1] = 0.0
-    strike(beam.w, 0, beam.u, 500.0, GRID)
-    assert beam.u[MID] == pytest.approx(500.0 * 1e-12 / (13.0 * 0.02))
-    assert np.count_nonzero(beam.u) == 1
-    assert beam.w[1, MID] == pytest.approx(MID + beam.u[MID])
-    assert beam.w[1, :2].tolist() == [-2.0, 0.0]
-    assert beam.w[1, MID + 1 :].tolist() == [MID - 1, MID - 2]
-    assert not beam.w[0].any()
 
 
 @pytest.mark.parametrize("mode", [1, 3, 7])

@@ -9,13 +9,11 @@ from impactlab.solver.contact.history import CONTACT, load, make_pair
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.outputs import RESPONSE, blank
 from impactlab.solver.responses import (
-    PLASTIC_ZONE_STRAIN,
     read_beam,
     read_contact,
     read_rebound,
-    share_above,
 )
-from impactlab.variables import RESPONSES, STATUS_FLAGS
+from impactlab.variables import RESPONSES
 
 DX = 0.01
 GRID = make_grid(20, DX, 1e-6, 13.0, 2e4)
@@ -124,75 +122,3 @@ def test_no_remark_on_an_answer_that_is_missing(answer, make_case, events):
     events.touching = 1
     read_contact(answer, events, contact, pair)
     assert answer.remarks == 0
-
-
-UNFINISHED = {
-    "in contact": ({"touching": 1}, outputs.IN_CONTACT_AT_END | outputs.SPHERE_NOT_LEAVING),
-    "first contact": ({"t_first_end": np.nan}, outputs.FIRST_CONTACT_UNFINISHED),
-    "loading": ({"delta": 1e-4}, outputs.INDENTATION_STILL_GROWING),
-    "bending": ({"w": 3e-4}, outputs.DEFLECTION_STILL_GROWING),
-}
-
-
-@pytest.mark.parametrize(("changes", "bits"), UNFINISHED.values(), ids=UNFINISHED)
-def test_what_is_missing_is_what_the_status_explains(
-    answer, case, events, contact, peeq, changes, bits
-):
-    for name, value in changes.items():
-        events[name] = value
-    read_everything(answer, case, events, contact, peeq)
-    assert answer.status == bits
-    flags = {bit: name for name, (bit, _) in STATUS_FLAGS.items()}
-    expected = {
-        name
-        for name, entry in RESPONSES.items()
-        if any(entry.missing == flags[b] for b in split(bits))
-    }
-    missing = {name for name in RESPONSES if np.isnan(answer[name])} - {"energy_error"}
-    assert missing == expected
-
-
-def split(bits):
-    return [1 << power for power in range(32) if bits >> power & 1]
-
-
-@pytest.mark.parametrize(
-    ("v_s", "v_mid", "leaves"),
-    [(-0.4, -0.1, True), (0.1, 0.2, False), (-0.1, -0.4, False), (0.0, 0.5, False)],
-    ids=["up and away", "down", "up, the beam faster", "at rest"],
-)
-def test_the_rebound_is_over_once_the_sphere_moves_up_and_away(
-    answer, case, events, v_s, v_mid, leaves
-):
-    events.v_s, events.v_mid = v_s, v_mid
-    read_rebound(answer, case, events)
-    assert np.isfinite(answer.rebound_velocity) == leaves
-    assert answer.status == (0 if leaves else outputs.SPHERE_NOT_LEAVING)
-
-
-def test_strains_of_the_beam(answer, case, events, peeq):
-    """The peak in any fibre; the remote one farther than a depth (2.78 DX) from mid-span."""
-    peeq[MID - 3, 0] = 3e-3
-    peeq[MID - 2, 1] = 9e-3
-    peeq[MID, 0] = 7e-3
-    read_beam(answer, case, events, peeq, GRID, 0.0)
-    assert answer.peak_plastic_strain == 9e-3
-    assert answer.remote_plastic_strain == 3e-3
-
-
-def test_plastic_zone_is_measured_between_the_nodes(answer, case, events, peeq):
-    """PEEQ linear in x around mid-span, zero from 6 DX on either side."""
-    slope = 4e-5
-    peeq[: MID + 1, 0] = slope * np.maximum(6.0 - np.arange(MID, -1, -1), 0)
-    read_beam(answer, case, events, peeq, GRID, 0.0)
-    reaches = 6.0 - PLASTIC_ZONE_STRAIN / slope
-    assert answer.plastic_zone_length == pytest.approx(2 * reaches * DX, rel=1e-12)
-    assert PLASTIC_ZONE_STRAIN == 1e-5  # as dataset.py tells the reader
-
-
-@pytest.mark.parametrize(
-    ("left", "right", "share"),
-    [(2, 3, 1), (0, 0.5, 0), (0, 4, 0.75), (4, 0, 0.75), (1, 1, 1), (0, 1, 0), (1, 2, 1)],
-)
-def test_share_of_a_cell_above_the_threshold(left, right, share):
-    assert share_above(float(left), float(right), 1.0) == share
