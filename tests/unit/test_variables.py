@@ -171,6 +171,8 @@ def test_source_revision_is_the_commit_and_says_when_the_tree_differs(source_tre
 
 def test_source_revision_outside_a_checkout_is_the_release(source_tree):
     assert provenance()["source_revision"] == f"release {version('impactlab')}"
-    # source revision of a broken checkout is unknown
+
+
+def test_source_revision_of_a_broken_checkout_is_unknown(source_tree):
     (source_tree / ".git").mkdir()
     assert provenance()["source_revision"].startswith("unknown")

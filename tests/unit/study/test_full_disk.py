@@ -18,7 +18,9 @@ def test_unreadable_files_are_named(tmp_path):
     (tmp_path / "x.nc").write_text("no such thing")
     with pytest.raises(OSError, match=r"x\.nc: cannot be read as netCDF"):
         read_netcdf(tmp_path / "x.nc", "runs")
-    # failed write leaves the old file and no rubbish
+
+
+def test_a_failed_write_leaves_the_old_file_and_no_rubbish(tmp_path):
     path = tmp_path / "runs.nc"
     write_netcdf(xr.Dataset({"a": 1.0}), path, "runs")
     with pytest.raises((TypeError, ValueError)):

@@ -94,12 +94,17 @@ def test_polynomials_are_met_exactly(random):
     np.testing.assert_allclose(
         fitted(unit, polynomial(unit), 0)(other), polynomial(other), rtol=1e-10
     )
-    # terms that do not help are left out
+
+
+def test_terms_that_do_not_help_are_left_out(random):
     unit = random.random((400, 3))
     noisy = unit[:, 0] + 0.05 * random.standard_normal(400)
     chaos = fitted(unit, noisy, 0)
     assert len(chaos.degrees) < 12
     assert [1, 0, 0] in chaos.degrees.tolist()
+
+
+def test_levels_bound_the_degree(random):
     # Four levels, as of Morris: a fourth degree would be one of the lower ones again.
     unit = random.integers(0, 4, (300, 2)) / 3
     chaos = fitted(unit, np.sin(5 * unit[:, 0]) + unit[:, 1], 0)
