@@ -329,13 +329,13 @@ def solve(
     """
     if profiles and any(np.unique(cases[name]).size > 1 for name in ("nodes", "points", "rule")):
         raise ValueError("profiles need the same nodes, points and rule in every run")
-    nodes, points = (int(cases[0].nodes), int(cases[0].points)) if profiles else (-1, 0)
-    half, fibres, runs = nodes // 2 + 1, points // 2, cases.size
+    nodes, points = (int(cases[0].nodes), int(cases[0].points)) if profiles else (0, 0)
+    fibres, runs = points // 2, cases.size
     table = fibre_table(cases)
     responses = blank(runs)
     histories = np.full((runs, len(HISTORIES), samples), np.nan)
-    deflection = np.full((runs, half), np.nan)
-    strains = np.full((2, runs, half, fibres), np.nan)
+    deflection = np.full((runs, nodes), np.nan)
+    strains = np.full((2, runs, nodes, fibres), np.nan)
     contacts, events = np.zeros(runs, CONTACT), np.zeros(runs, EVENTS)
     arrays = (responses, contacts, events, histories, deflection, *strains)
     kinds = np.stack([cases["beam_model"], cases["scheme"], is_extended(cases)])
@@ -350,9 +350,9 @@ def solve(
     if samples:
         columns |= zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)
     if profiles:
-        columns["equivalent_plastic_strain"] = _mirror(_depth(strains[1], 1.0, points))
-        columns["plastic_strain"] = _mirror(_depth(strains[0], -1.0, points))
-        columns["deflection"] = _mirror(deflection)
+        columns["equivalent_plastic_strain"] = _depth(strains[1], 1.0, points)
+        columns["plastic_strain"] = _depth(strains[0], -1.0, points)
+        columns["deflection"] = deflection
     return columns
 
 
@@ -464,13 +464,6 @@ def _section_fields(beam: Beam) -> dict[str, Any]:
         "plate_stiffness": section.plate_stiffness(metal.youngs_modulus, metal.poissons_ratio),
         "stress_per_moment": section.stress_per_moment,
     }
-
-
-# Whole beams from half beams with half depths, outermost fibre first
-
-
-def _mirror(half: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    return np.concatenate([half, half[:, -2::-1]], axis=1)
 
 
 def _depth(lower: np.ndarray[Any, Any], sign: float, points: int) -> np.ndarray[Any, Any]:

@@ -18,6 +18,10 @@ from impactlab.solver.contact import LAWS
 
 MODELS = (*BEAM_MODELS, *wings.models())
 """Names of all models of the beam."""
+SUPPORTS = ("pinned",)
+"""Supports of a beam; solver/beam.py says what others, or another MID_SPAN, would change."""
+MID_SPAN = 0.5
+"""Place of the strike over the span."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -168,12 +172,14 @@ class Beam:
         Shear force over G A times the shear angle, of Timoshenko's beam alone.
     shape : {"rectangle"}, default "rectangle"
         Shape of the section.
+    supports : {"pinned"}, default "pinned"
+        Supports of both ends, at which deflection and moment are zero.
 
     Raises
     ------
     ValueError
         If a length is not finite and positive, the depth not below the span, the shear coefficient
-        not in (0, 1], the shape unknown, or the material is not a `Material`.
+        not in (0, 1], shape or supports unknown, or the material is not a `Material`.
 
     Examples
     --------
@@ -188,6 +194,7 @@ class Beam:
     material: Material
     shear_coefficient: SI[float] = SI("1", Rectangle.shear_coefficient(0.3))
     shape: str = "rectangle"
+    supports: str = "pinned"
 
     def __post_init__(self) -> None:
         instance("Beam", "material", self.material, Material)
@@ -199,6 +206,7 @@ class Beam:
         message = "must be in (0, 1]; 5/6 holds for a rectangle"
         require(k <= 1, "Beam", "shear_coefficient", self.shear_coefficient, message)
         one_of("Beam", "shape", self.shape, tuple(SHAPES))
+        one_of("Beam", "supports", self.supports, SUPPORTS)
 
     @property
     def section(self) -> Rectangle:
@@ -251,7 +259,7 @@ class Beam:
 
 @dataclass(frozen=True, kw_only=True)
 class Impact:
-    """A sphere that hits the middle of a beam at rest.
+    """A sphere that hits a beam at rest.
 
     Parameters
     ----------
@@ -281,6 +289,8 @@ class Impact:
     contact_prestress : {"ignored", "bending"}, default "ignored"
         Stress from the beam's bending that changes the force at which the contact yields
         (solver/contact/prestress.py). "bending" needs `beam_model="timoshenko"`.
+    strike_position : Quantity, default 0.5
+        Place that the sphere strikes over the span; 0.5, mid-span, is the only one offered.
 
     Raises
     ------
@@ -307,6 +317,7 @@ class Impact:
     load: str = "point"
     contact_compliance: str = "half_space"
     contact_prestress: str = "ignored"
+    strike_position: SI[float] = SI("1", MID_SPAN)
 
     def __post_init__(self) -> None:
         instance("Impact", "sphere", self.sphere, Sphere)
@@ -319,6 +330,8 @@ class Impact:
         one_of("Impact", "load", self.load, LOADS)
         one_of("Impact", "contact_compliance", self.contact_compliance, COMPLIANCES)
         one_of("Impact", "contact_prestress", self.contact_prestress, PRESTRESSES)
+        place, message = number("Impact", "strike_position", self.strike_position), "must be 0.5"
+        require(place == MID_SPAN, "Impact", "strike_position", place, f"{message}, mid-span")
 
     def _repr_html_(self) -> str:
         """Return a table of all parameters for notebooks, with units."""

@@ -1,8 +1,16 @@
 """The Euler-Bernoulli beam by finite differences: rho A w_tt = M_xx + p, kappa = w_xx.
 
-By symmetry only the half from the left support to mid-span is solved. Arrays along it have n + 4
-entries: 1 is the support, where w = M = 0, `mid` = n + 1 is mid-span, and 0, mid + 1, mid + 2
-mirror the nodes within. Deflection is positive downwards.
+Deflection is positive downwards. By symmetry only the half from the left support to mid-span is
+solved. Arrays along it have n + 4 entries: 1 is the support, where w = M = 0, `mid` = n + 1 is
+mid-span, which is struck, and 0, mid + 1, mid + 2 mirror the nodes within.
+
+That a half is solved, and the strike at its end, is known here alone: make_grid places the nodes,
+COPIES and copies() are the factors of works and energies, mirror() and its kin set what lies beyond
+the ends, and half_node() finds the nodes of a profile of the whole beam. Another place of the
+strike, or other supports (fields of the model's classes with one value each), would change these;
+the loops, which end at `mid`, would end at a last node of the grid's own; and the modal scheme,
+whose modes are the symmetric ones of pinned ends (modes.py), and the static shape of lumped.py
+would need others.
 
 With M = M_0 - EI kappa (section.py), M_xx is the fourth difference of w and the second one of
 M_0. M_0 changes only where sections yield, so a step is one loop over w, and the share of M_0 in
@@ -11,12 +19,12 @@ it, `plastic`, is kept from step to step.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from impactlab.solver.jit import allocating, compiled, vectorised
-from impactlab.solver.types import ONE, TWO, Array
+from impactlab.solver.jit import allocating, compiled, inlined, vectorised
+from impactlab.solver.types import ONE, TWO, Array, Index
 
 
 class BeamState(NamedTuple):
@@ -34,7 +42,7 @@ class BeamState(NamedTuple):
 
 
 class BeamGrid(NamedTuple):
-    """mid: index of mid-span; dx (m); dt (s); mu = rho A (kg/m).
+    """mid: index of mid-span, the struck node; dx (m); dt (s); mu = rho A (kg/m).
 
     per_dx2 = 1/dx^2. Shares in w of one step: factor = dt^2/(mu dx^2) of a second difference of
     moments, stiffness = factor EI/dx^2 of a fourth difference of w, push = dt^2/(mu dx) of the
@@ -51,15 +59,35 @@ class BeamGrid(NamedTuple):
     push: float
 
 
+COPIES = 2.0
+"""Nodes of the whole beam that a node of the half stands for; mid-span is its own mirror image."""
 _NOTHING = 1e-100
 """A deflection (m) ahead of the wave that counts as none: keeps denormal numbers out."""
 
 
 @compiled
-def make_grid(n: int, dx: float, dt: float, mu: float, EI: float) -> BeamGrid:
-    """Return a grid with n spacings in the half beam, and what follows from it."""
-    factor = dt**2 / (mu * dx**2)
-    return BeamGrid(n + 1, dx, dt, mu, 1.0 / dx**2, factor, factor * EI / dx**2, dt**2 / (mu * dx))
+def half_spacings(nodes: int) -> int:
+    """Return how many spacings are solved of a beam with so many nodes."""
+    return nodes // 2
+
+
+@compiled
+def make_grid(nodes: int, dx: float, dt: float, mu: float, EI: float) -> BeamGrid:
+    """Return the grid of a beam with so many nodes, and what follows from it."""
+    mid, factor = half_spacings(nodes) + 1, dt**2 / (mu * dx**2)
+    return BeamGrid(mid, dx, dt, mu, 1.0 / dx**2, factor, factor * EI / dx**2, dt**2 / (mu * dx))
+
+
+@compiled
+def copies(grid: BeamGrid, i: Index) -> float:
+    """Return how many nodes of the whole beam node i stands for."""
+    return 1.0 if i == grid.mid else COPIES
+
+
+@compiled
+def half_node(grid: BeamGrid, i: int) -> int:
+    """Return which node stands for the whole beam's node i, counted from 0 at the left support."""
+    return min(i, 2 * (grid.mid - 1) - i) + 1
 
 
 @allocating
@@ -147,6 +175,29 @@ def mirror(w: Array, now: int, grid: BeamGrid) -> None:
     w[after, mid + 2] = w[after, mid - 2]
 
 
+@inlined
+def mirror_even(field: Array, mid: int) -> None:
+    """Set the node beyond mid-span of a field that is even there."""
+    field[mid + 1] = field[mid - 1]
+
+
+@inlined
+def mirror_halfway(field: Array, mid: int) -> None:
+    """Set the value beyond mid-span of an odd field, half-way from node i to i + 1 at index i."""
+    field[mid] = -field[mid - 1]
+
+
+@compiled
+def add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: BeamGrid) -> None:
+    """Change M_0 of section i by so much (N m), and `plastic` with it."""
+    share = grid.factor * change
+    M_0[i] += change
+    plastic[i - ONE] += share  # at the support it is never read
+    plastic[i] -= 2.0 * share
+    # mid-span has such a neighbour on both sides
+    plastic[i + ONE] += COPIES * share if i + ONE == np.uint64(grid.mid) else share
+
+
 # The energy at a full step, once u has been moved on.
 
 
@@ -170,7 +221,7 @@ def _kinetic_sum(
         beside = w[now, i - ONE] + w[now, i + ONE]
         fourth = w[now, i - TWO] + w[now, i + TWO] - 4.0 * beside + 6.0 * w[now, i]
         half += u[i] * (u[i] - plastic[i] + grid.stiffness * fourth)
-    return 2.0 * half + u[grid.mid] * u_mid
+    return COPIES * half + u[grid.mid] * u_mid
 
 
 @compiled
@@ -189,4 +240,4 @@ def _bending_sum(w: Array, now: int, M_0: Array, EI: float, grid: BeamGrid) -> f
         kappa = (w[now, i - ONE] - 2.0 * w[now, i] + w[now, i + ONE]) * grid.per_dx2
         half += kappa * (0.5 * EI * kappa - M_0[i])
     kappa = 2.0 * (w[now, mid - 1] - w[now, mid]) * grid.per_dx2
-    return 2.0 * half + kappa * (0.5 * EI * kappa - M_0[mid])
+    return COPIES * half + kappa * (0.5 * EI * kappa - M_0[mid])

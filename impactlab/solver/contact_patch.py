@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.beam import BeamGrid, BeamState, mirror
+from impactlab.solver.beam import COPIES, BeamGrid, BeamState, mirror
 from impactlab.solver.contact.history import Pair
 from impactlab.solver.contact.switch import radius
 from impactlab.solver.jit import compiled
@@ -70,8 +70,8 @@ def spread_over_nodes(
 ) -> tuple[float, float, int]:
     """Spread a force F (N), with which a step was made at mid-span, over the radius a (m).
 
-    Returns (how far the mean under the pressure has moved beyond mid-span, m; work of F on the half
-    beam without mid-span, J; number of nodes pushed beside mid-span).
+    Returns (how far the mean under the pressure has moved beyond mid-span, m; half the work of F
+    beside mid-span, J; number of nodes pushed on either side of it).
     """
     u, du, after, mid = beam.u, beam.du, beam.w[1 - now], grid.mid
     shares, mean, pushed = 0.0, 0.0, 0
@@ -84,9 +84,9 @@ def spread_over_nodes(
         after[i] += change
         shares += share
         mean += share * u[i]
-    back = 2.0 * shares * grid.push * F
+    back = COPIES * shares * grid.push * F
     du[mid] -= back
     u[mid] -= back
     after[mid] -= back
     mirror(beam.w, now, grid)
-    return 2.0 * (mean - shares * u[mid]), F * mean, pushed
+    return COPIES * (mean - shares * u[mid]), 0.5 * COPIES * F * mean, pushed

@@ -12,11 +12,11 @@ in which they are outside their static interval.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver.beam import BeamGrid, BeamState
+from impactlab.solver.beam import BeamGrid, BeamState, add_moment, copies
 from impactlab.solver.jit import allocating, compiled, vectorised
 from impactlab.solver.section import (
     FAR,
@@ -91,17 +91,6 @@ def curvature(w: Array, now: int, psi: Array | None, grid: BeamGrid, i: Index) -
 
 
 @compiled
-def _add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: BeamGrid) -> None:
-    """Change M_0 of section i by so much (N m), and `plastic` with it."""
-    share = grid.factor * change
-    M_0[i] += change
-    plastic[i - ONE] += share  # at the support it is never read
-    plastic[i] -= 2.0 * share
-    # mid-span has such a neighbour on both sides
-    plastic[i + ONE] += 2.0 * share if i + ONE == np.uint64(grid.mid) else share
-
-
-@compiled
 def follow_tangents(
     w: Array,
     now: int,
@@ -123,7 +112,7 @@ def follow_tangents(
         direction, ahead = tangent[i, 0], kappa - tangent[i, 3]
         if ahead * direction >= 0.0 and (tangent[i, 2] - kappa) * direction >= 0.0:
             tangent[i, 3] = kappa
-            _add_moment(plastic, M_0, i, tangent[i, 1] * ahead, grid)
+            add_moment(plastic, M_0, i, tangent[i, 1] * ahead, grid)
         else:
             tangent[i, 0] = 0.0
             ended += 1
@@ -153,7 +142,7 @@ def leave_tangents(
                 i,
             )
             if plastic_state.kappa_min[i] <= kappa <= plastic_state.kappa_max[i]:
-                _add_moment(beam.plastic, plastic_state.M_0, i, M_0 - plastic_state.M_0[i], grid)
+                add_moment(beam.plastic, plastic_state.M_0, i, M_0 - plastic_state.M_0[i], grid)
                 plastic_state.on_tangent[k] = plastic_state.on_tangent[plastic_state.on_tangent[0]]
                 plastic_state.on_tangent[0] -= ONE
                 continue
@@ -235,7 +224,7 @@ def _yield(
     """
     if rate is not None and rate.D > 0.0:
         M_0 = flow(plastic_state, section, rate, i, kappa, grid.dt)
-        _add_moment(beam.plastic, plastic_state.M_0, i, M_0 - plastic_state.M_0[i], grid)
+        add_moment(beam.plastic, plastic_state.M_0, i, M_0 - plastic_state.M_0[i], grid)
         return
     _begin_tangent(beam, plastic_state, section, grid, i, kappa)
     plastic_state.on_tangent[0] += ONE
@@ -254,7 +243,7 @@ def _begin_tangent(
     """Bend section i out of its elastic interval to kappa, where its tangent begins."""
     direction = 1.0 if kappa > plastic_state.kappa_max[i] else -1.0
     M_0, _, _ = bend(section, kappa, plastic_state.plastic_strain, plastic_state.peeq, i)
-    _add_moment(beam.plastic, plastic_state.M_0, i, M_0 - plastic_state.M_0[i], grid)
+    add_moment(beam.plastic, plastic_state.M_0, i, M_0 - plastic_state.M_0[i], grid)
     growth, limit = tangent(
         section, kappa, direction, plastic_state.plastic_strain, plastic_state.peeq, i
     )
@@ -288,7 +277,7 @@ def plastic_energy(
             stored_i, dissipated_i = plastic_energies(
                 section, plastic_state.plastic_strain, plastic_state.peeq, i
             )
-            times = 1.0 if i == grid.mid else 2.0
+            times = copies(grid, i)
             stored += times * stored_i
             dissipated += times * (dissipated_i + plastic_state.flowed[i, 1])
     return stored * grid.dx, dissipated * grid.dx

@@ -23,14 +23,13 @@ from impactlab.solver import (
     strip,
     timoshenko,
 )
-from impactlab.solver.beam import BeamState, make_beam, make_grid, rest_beam
+from impactlab.solver.beam import half_node, make_beam, make_grid, rest_beam
 from impactlab.solver.contact import history as contact_history
 from impactlab.solver.contact import prestress
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.contact.switch import DAMPED
 from impactlab.solver.contact_patch import contact_radius
 from impactlab.solver.fibre_plasticity import (
-    PlasticState,
     catch_up,
     make_plastic_state,
     plastic_energy,
@@ -251,21 +250,16 @@ def _end_of_alike(cases: Array, start: int) -> int:
 
 @compiled
 def _keep_profiles(
-    beam: BeamState,
-    plastic: PlasticState,
-    now: int,
-    r: int,
-    deflection: Array,
-    plastic_strain: Array,
-    peeq: Array,
+    state: State, now: int, r: int, deflection: Array, plastic_strain: Array, peeq: Array
 ) -> None:
-    """Keep the half beam's final state as that of run r, if it is asked for."""
+    """Keep the beam's final state as that of run r, if it is asked for."""
     # element by element: slices would compile the message of numpy's error, for seconds
     for i in range(deflection.shape[1]):
-        deflection[r, i] = beam.w[now, i + 1]
+        node = half_node(state.grid, i)
+        deflection[r, i] = state.beam.w[now, node]
         for j in range(peeq.shape[2]):
-            plastic_strain[r, i, j] = plastic.plastic_strain[i + 1, j]
-            peeq[r, i, j] = plastic.peeq[i + 1, j]
+            plastic_strain[r, i, j] = state.plastic.plastic_strain[node, j]
+            peeq[r, i, j] = state.plastic.peeq[node, j]
 
 
 def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
@@ -317,9 +311,9 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     as by model.section.fibre_table. answers: blank RESPONSE records, filled. contacts, events:
     zeros, CONTACT and EVENTS records to work in. samples: shape (R, 5, S), filled with force,
     mid-span deflection, mid-span curvature, sphere displacement and indentation at S equal
-    intervals from 0 to the duration; S = 0 for none. deflection (R, n + 1), plastic_strain and peeq
-    (R, n + 1, P // 2): filled with the half beam's final state; length 0 for none. A run that
-    diverges leaves NaN and its status.
+    intervals from 0 to the duration; S = 0 for none. deflection (R, nodes), plastic_strain and peeq
+    (R, nodes, P // 2): filled with the beam's final state; length 0 for none. A run that diverges
+    leaves NaN and its status.
 
     A record does not keep its array alive in compiled code, so kernels make no arrays of records:
     those of all runs are the caller's, who holds them until this returns.
@@ -342,7 +336,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
         while stop < cases.size:
             start, first = stop, cases[stop]
             stop = _end_of_alike(cases, start)
-            room, size = make_room(first), make_grid(first.nodes // 2, 1.0, 1.0, 1.0, 1.0)
+            room, size = make_room(first), make_grid(first.nodes, 1.0, 1.0, 1.0, 1.0)
             section = cut(first, fibres[start], room)
             beam, plastic = make_beam(size), make_plastic_state(size, section)
             extra = make(first, section, size)
@@ -363,7 +357,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
                     continue
                 if deflection.shape[1] > 0:
                     deflect(state, now)
-                _keep_profiles(beam, plastic, now, r, deflection, plastic_strain, peeq)
+                _keep_profiles(state, now, r, deflection, plastic_strain, peeq)
 
     kernel.__qualname__ = name
     return allocating(kernel)

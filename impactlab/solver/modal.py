@@ -31,7 +31,7 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.beam import BeamGrid
+from impactlab.solver.beam import BeamGrid, copies
 from impactlab.solver.contact_patch import wave_share
 from impactlab.solver.fibre_plasticity import PlasticState, flow, plastic_energy
 from impactlab.solver.flight import (
@@ -124,7 +124,7 @@ def bend_sections(
         kappa = mode_curvature(modes.q, modes.bent, i)
         if kappa > plastic.kappa_max[i] or kappa < plastic.kappa_min[i]:
             M_0 = _bend(plastic, section, section.rate, i, kappa, grid.dt)
-            length = grid.dx if i == grid.mid else 2.0 * grid.dx
+            length = copies(grid, i) * grid.dx
             add_moment(modes.source, modes.bent, i, length * (M_0 - plastic.M_0[i]))
             modes.leaps.memory[FRESH] = 0
             plastic.M_0[i] = M_0
@@ -132,7 +132,7 @@ def bend_sections(
 
 @allocating
 def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Modes:
-    return make_modes(case.nodes // 2, grid, section.stiffness, section.yield_curvature)
+    return make_modes(grid, section.stiffness, section.yield_curvature)
 
 
 @compiled

@@ -44,8 +44,9 @@ class Modes(NamedTuple):
 
 
 @allocating
-def make_modes(n: int, grid: BeamGrid, EI: float, yield_curvature: float) -> Modes:
-    """Return the modes of a half beam of n spacings, at rest."""
+def make_modes(grid: BeamGrid, EI: float, yield_curvature: float) -> Modes:
+    """Return the modes of a half beam, as many as it has spacings, at rest."""
+    n = grid.mid - 1
     cosine = np.zeros(4 * n)
     for i in range(n):
         cosine[i] = math.cos(0.5 * math.pi * i / n)

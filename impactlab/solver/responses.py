@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from impactlab.solver.beam import BeamGrid
+from impactlab.solver.beam import COPIES, BeamGrid
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.finite_element import (
     LARGEST_CIRCLE,
@@ -149,7 +149,7 @@ def read_beam(
         if (grid.mid - i) * grid.dx > case.beam_depth:
             answer.remote_plastic_strain = max(answer.remote_plastic_strain, strain)
         share = share_above(strain_before, strain, PLASTIC_ZONE_STRAIN)
-        answer.plastic_zone_length += 2.0 * grid.dx * share
+        answer.plastic_zone_length += COPIES * grid.dx * share
         strain_before = strain
     answer.plastic_dissipation = dissipated
 

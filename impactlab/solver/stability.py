@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.beam import BeamGrid, make_grid
+from impactlab.solver.beam import BeamGrid, half_spacings, make_grid
 from impactlab.solver.contact.history import PANELS, Pair, loading_work
 from impactlab.solver.contact.switch import curve, damping, is_damped
 from impactlab.solver.jit import compiled
@@ -111,7 +111,7 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
     push = 1.0 / (mu * dx) + 1.0 / case.sphere_mass
     if case.scheme == MODAL:
         wave = dx * math.sqrt(case.beam_density / case.beam_youngs_modulus)
-        push += (1.0 / 3.0 + 7.0 / (6.0 * (case.nodes // 2))) / (mu * dx)
+        push += (1.0 / 3.0 + 7.0 / (6.0 * half_spacings(case.nodes))) / (mu * dx)
         about = _SAFETY * stiffest_contact(case, pair, _COARSE_GROWTH)
         if about * push * wave * wave < 2.0 and not is_damped(pair.law):
             return wave
@@ -148,4 +148,4 @@ def discretise(case: Record, pair: Pair, section: FibreSection) -> tuple[BeamGri
     dt = case.courant * largest_time_step(case, pair, section.stiffness, dx)
     steps = math.ceil(case.duration / dt)
     dt, mu = case.duration / steps, case.mass_per_length
-    return make_grid(case.nodes // 2, dx, dt, mu, section.stiffness), steps
+    return make_grid(case.nodes, dx, dt, mu, section.stiffness), steps

@@ -33,7 +33,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver import timoshenko
-from impactlab.solver.beam import BeamGrid
+from impactlab.solver.beam import COPIES, BeamGrid, mirror_even
 from impactlab.solver.contact.axis_lift import axis_lift
 from impactlab.solver.fibre_plasticity import curvature, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, vectorised
@@ -128,7 +128,7 @@ def _swing(strip: Strip, push: float, per_dx: float, F: float, mid: int) -> None
     """Move s by one step; push = dt^2/m."""
     s, rate, d_rate, bent = strip.s, strip.rate, strip.d_rate, strip.bent
     T, DB = strip.twist * per_dx * per_dx, strip.stiffness
-    s[mid + 1] = s[mid - 1]
+    mirror_even(s, mid)
     for i in range(np.uint64(2), np.uint64(mid + 1)):
         d_rate[i] = push * (T * (s[i - ONE] - 2.0 * s[i] + s[i + ONE]) - DB * bent[i])
     d_rate[mid] -= push * strip.lever * F * per_dx
@@ -145,13 +145,13 @@ def _width_energy(strip: Strip, grid: BeamGrid) -> float:
     for i in range(np.uint64(2), np.uint64(mid)):
         moved += rate[i] * (rate[i] - d_rate[i])
         bending += bent[i] * bent[i]
-    moved += 0.5 * rate[mid] * (rate[mid] - d_rate[mid])
-    bending += 0.5 * bent[mid] * bent[mid]
+    moved += 1.0 / COPIES * rate[mid] * (rate[mid] - d_rate[mid])
+    bending += 1.0 / COPIES * bent[mid] * bent[mid]
     for i in range(np.uint64(1), np.uint64(mid)):
         slope = (s[i + ONE] - rate[i + ONE] - s[i] + rate[i]) / grid.dx
         twisted += slope * slope
     kinetic = strip.inertia * moved / grid.dt**2
-    return grid.dx * (kinetic + strip.stiffness * bending + strip.twist * twisted)
+    return 0.5 * COPIES * grid.dx * (kinetic + strip.stiffness * bending + strip.twist * twisted)
 
 
 @compiled

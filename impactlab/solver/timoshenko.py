@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver.beam import BeamGrid, BeamState, mirror
+from impactlab.solver.beam import COPIES, BeamGrid, BeamState, mirror, mirror_halfway
 from impactlab.solver.contact_patch import spread_over_nodes
 from impactlab.solver.euler_bernoulli import deflected
 from impactlab.solver.fibre_plasticity import (
@@ -89,7 +89,8 @@ def move(grid: BeamGrid, beam: BeamState, shear: Shear, now: int, F: float, per_
     """Move rotation and deflection by one step, under the moments and the contact force F (N)."""
     psi, Q, mid = shear.psi, shear.Q, grid.mid
     _rotate(beam.w, now, shear, grid.dt**2 / shear.inertia, per_dx, mid)
-    psi[mid], Q[mid] = -psi[mid - 1], -Q[mid - 1]
+    mirror_halfway(psi, mid)
+    mirror_halfway(Q, mid)
     _shift(beam.w, now, beam.u, beam.du, Q, grid.push, F, mid)
     mirror(beam.w, now, grid)
 
@@ -153,13 +154,13 @@ def shear_energy(beam: BeamState, shear: Shear, M_0: Array, EI: float, grid: Bea
     for i in range(np.uint64(2), np.uint64(mid)):
         moved += u[i] * (u[i] - du[i])
         bent += shear.M[i] * shear.M[i] - M_0[i] * M_0[i]
-    moved += 0.5 * u[mid] * (u[mid] - du[mid])
-    bent += 0.5 * (shear.M[mid] * shear.M[mid] - M_0[mid] * M_0[mid])
+    moved += 1.0 / COPIES * u[mid] * (u[mid] - du[mid])
+    bent += 1.0 / COPIES * (shear.M[mid] * shear.M[mid] - M_0[mid] * M_0[mid])
     for i in range(np.uint64(1), np.uint64(mid)):
         turned += spin[i] * (spin[i] - d_spin[i])
         sheared += shear.Q[i] * shear.Q[i]
     moving = (grid.mu * moved + shear.inertia * turned) / grid.dt**2
-    return grid.dx * (moving + bent / EI + sheared / shear.stiffness)
+    return 0.5 * COPIES * grid.dx * (moving + bent / EI + sheared / shear.stiffness)
 
 
 @compiled

@@ -214,7 +214,7 @@ class _ModalMarch(_March):
     def __init__(self, impact: Impact, discretisation: Discretisation, duration: float) -> None:
         super().__init__(impact, discretisation, duration)
         bending = self.section.stiffness, self.section.yield_curvature
-        self.modes = make_modes(discretisation.nodes // 2, self.grid, *bending)
+        self.modes = make_modes(self.grid, *bending)
         self.w, self.u = self.modes.q, self.modes.u
 
     def move(self, newtons: float) -> None:

@@ -18,7 +18,7 @@ from impactlab.solver.section import bend
 
 N = 20
 """Spacings in the half beam."""
-GRID = make_grid(N, 0.02, 1e-6, 13.0, 2e4)
+GRID = make_grid(2 * N + 1, 0.02, 1e-6, 13.0, 2e4)
 MID = GRID.mid
 
 
@@ -56,7 +56,7 @@ def test_free_vibration_is_that_of_the_discrete_beam(make_case, mode):
     """sin(k pi x/L) cos(j theta), 4 sin^2(theta/2) = dt^2 EI/mu (4 sin^2(k pi/(4 n))/dx^2)^2."""
     mu, dx, section = 13.0, 0.02, fibre_section(make_case(points=5))
     EI = section.stiffness
-    grid = make_grid(N, dx, 0.4 * dx**2 * np.sqrt(mu / EI), mu, EI)
+    grid = make_grid(2 * N + 1, dx, 0.4 * dx**2 * np.sqrt(mu / EI), mu, EI)
     shape = np.sin(mode * np.pi * np.arange(N + 1) / (2 * N))
     eigenvalue = (4 * np.sin(mode * np.pi / (4 * N)) ** 2 / dx**2) ** 2
     theta = 2 * np.arcsin(0.5 * grid.dt * np.sqrt(EI / mu * eigenvalue))

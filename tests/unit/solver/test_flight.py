@@ -24,10 +24,10 @@ MU, EI, SPAN = 13.0, 2e4, 0.8
 def swinging(n, turn, seed, slope=3.0):
     """Modes in free motion about a rest of their own; the fastest turns by `turn` per step."""
     random = np.random.default_rng(seed)
-    grid = make_grid(n, 0.5 * SPAN / n, 1e-6, MU, EI)
+    grid = make_grid(2 * n + 1, 0.5 * SPAN / n, 1e-6, MU, EI)
     k = (2 * n - 1) * np.pi / SPAN
     grid = grid._replace(dt=turn / (k**2 * np.sqrt(EI / MU)))
-    modes = make_modes(n, grid, EI, FAR)
+    modes = make_modes(grid, EI, FAR)
     size = 1e-3 / np.arange(1, 2 * n + 2, 2) ** slope
     modes.q[:], modes.u[:] = random.normal(0, size), random.normal(0, size * np.sqrt(modes.D))
     modes.source[:n] = (random.normal(0, size) * modes.D / modes.push)[:n]

@@ -27,8 +27,8 @@ JIT_ONLY = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="takes minu
 
 def modes_of(n, dt):
     """Modes of an elastic beam with n spacings in its half, and its grid."""
-    grid = make_grid(n, 0.5 * SPAN / n, dt, MU, EI)
-    return make_modes(n, grid, EI, FAR), grid
+    grid = make_grid(2 * n + 1, 0.5 * SPAN / n, dt, MU, EI)
+    return make_modes(grid, EI, FAR), grid
 
 
 def move(modes, F):
@@ -114,7 +114,7 @@ def yielding_beam(make_case, **values):
     case = make_case(duration=1e-3, **YIELDING, **values)
     section = fibre_section(case)
     grid, _ = discretise(case, make_pair(case), section)
-    modes = make_modes(case.nodes // 2, grid, section.stiffness, section.yield_curvature)
+    modes = make_modes(grid, section.stiffness, section.yield_curvature)
     return modes, make_plastic_state(grid, section), section, grid
 
 
@@ -175,8 +175,8 @@ def test_a_step_with_any_sections_yielding_is_stable(make_case, values, nodes):
     assert (dt < 0.99 * wave) == bool(values)
     mu = case.beam_density * case.beam_width * case.beam_depth
     n = nodes // 2
-    grid, random = make_grid(n, dx, dt, mu, section.stiffness), np.random.default_rng(1)
-    modes = make_modes(n, grid, section.stiffness, section.yield_curvature)
+    grid, random = make_grid(2 * n + 1, dx, dt, mu, section.stiffness), np.random.default_rng(1)
+    modes = make_modes(grid, section.stiffness, section.yield_curvature)
     bent, lengths = modes.bent[2 : grid.mid + 1], np.full(n, 2 * dx)
     lengths[-1] = dx
     for share in (0.0, 0.3, 1.0):

@@ -16,7 +16,7 @@ from impactlab.solver.responses import (
 from impactlab.variables import RESPONSES
 
 DX = 0.01
-GRID = make_grid(20, DX, 1e-6, 13.0, 2e4)
+GRID = make_grid(41, DX, 1e-6, 13.0, 2e4)
 MID = GRID.mid
 
 
