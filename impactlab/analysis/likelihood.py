@@ -9,11 +9,8 @@ of a fitted one.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from impactlab.analysis.measurements import COVERAGE, Measurement, same
 from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
@@ -28,141 +25,59 @@ has fallen to 1/e: by measured coverage, see tests/benchmarks/calibration_covera
 _POINTS, _SEED = 256, 1  # of the prior, over which the surrogate's error is averaged
 
 
-@dataclass(frozen=True)
 class Likelihood:
     """The likelihood of measurements at points of the unit cube, whose axes are the prior's.
 
     numerical: relative expanded uncertainty of responses; model_error: see posterior.calibrated.
+    free: calibrated parameters, which no measurement states. measured: values, error: standard
+    error of the surrogate, both (measurements,). covariance: of all errors together,
+    (measurements, measurements).
 
     Raises ValueError, with every reason, where the surrogate cannot predict a measurement.
     """
 
-    surrogate: Surrogate
-    measurements: Sequence[Measurement]
-    numerical: Mapping[str, float]
-    model_error: float
-
-    def __post_init__(self) -> None:
-        reasons = list(_mismatches(self.surrogate, self.measurements))
-        for name in self.free:
-            pairs = zip(self.measurements, self._stated, strict=True)
-            if quantities := [entry.quantity for entry, stated in pairs if name in stated]:
-                reasons.append(
-                    f"{name}: is stated for {quantities[0]} but not for all: state it for all, or "
-                    "none"
-                )
-        if not 0 < len(self.free) <= MOST:
-            reasons.append(
-                f"{len(self.free)} parameters are left to calibrate "
-                f"({', '.join(self.free) or 'none'}): vary 1 to {MOST} that no measurement states"
-            )
+    def __init__(
+        self,
+        surrogate: Surrogate,
+        measurements: Sequence[Measurement],
+        numerical: Mapping[str, float],
+        model_error: float,
+    ) -> None:
+        """Match a surrogate with measurements."""
+        reasons = list(_mismatches(surrogate, measurements))
+        stated = [measurement.conditions for measurement in measurements]
+        names, probability = surrogate.parameters, surrogate.probability
+        self.free = tuple(n for n in names if not all(n in conditions for conditions in stated))
+        reasons += _contradictions(self.free, measurements)
         if reasons:
             raise ValueError("\n".join(dict.fromkeys(reasons)))
-
-    @cached_property
-    def _stated(self) -> list[dict[str, float]]:
-        """The varied parameters that each measurement states, in SI units."""
-        return [
-            {
-                name: float(measurement.conditions[name])
-                for name in self.surrogate.parameters
-                if name in measurement.conditions
-            }
-            for measurement in self.measurements
-        ]
-
-    @cached_property
-    def free(self) -> tuple[str, ...]:
-        """The calibrated parameters: those that not all measurements state."""
-        names = self.surrogate.parameters
-        return tuple(n for n in names if not all(n in stated for stated in self._stated))
-
-    @cached_property
-    def _common(self) -> tuple[str, ...]:
-        """The varied parameters that all measurements state."""
-        return tuple(name for name in self.surrogate.parameters if name not in self.free)
-
-    @cached_property
-    def _conditions(self) -> Floats:
-        """The probabilities of these, (measurements, common)."""
-        probability = self.surrogate.probability
-        return np.array([[probability(n, row[n]) for n in self._common] for row in self._stated])
-
-    @cached_property
-    def _places(self) -> dict[tuple[float, ...], list[int]]:
-        """The numbers of the measurements at each of the distinct conditions."""
-        places: dict[tuple[float, ...], list[int]] = {}
-        for number, conditions in enumerate(self._conditions.tolist()):
-            places.setdefault(tuple(conditions), []).append(number)
-        return places
-
-    @cached_property
-    def _limits(self) -> Floats:
-        """Probabilities of the ends of the sampled ranges, (2, free)."""
-        sampled = self.surrogate.dataset.sel(parameter=list(self.free))
+        self.surrogate, self.measurements = surrogate, measurements
+        self._common = tuple(name for name in names if name not in self.free)
+        self._conditions = np.array(
+            [[probability(n, float(conditions[n])) for n in self._common] for conditions in stated]
+        )
+        sampled = surrogate.dataset.sel(parameter=list(self.free))
         ends = zip(self.free, sampled["lowest"].values, sampled["highest"].values, strict=True)
-        probability = self.surrogate.probability
-        return np.array([[probability(name, float(end)) for end in pair] for name, *pair in ends]).T
-
-    def _prior(self, points: Floats) -> Floats:
-        """Return the probabilities of the free parameters at points of the cube, of its shape."""
-        low, high = self._limits
-        return np.asarray(low + (high - low) * points)
-
-    def values(self, points: Floats) -> Floats:
-        """Return the free parameters at points of the cube, in SI units, (points, free)."""
-        distributions = [distribution_of(self.surrogate.distribution(n)) for n in self.free]
-        columns = zip(distributions, self._prior(points).T, strict=True)
-        return np.array([distribution.quantile(column) for distribution, column in columns]).T
-
-    def _inputs(self, points: Floats, conditions: Sequence[float]) -> Floats:
-        """Return the probabilities of all parameters, (points, parameters)."""
-        columns = dict(zip(self.free, self._prior(points).T, strict=True))
-        pairs = zip(self._common, conditions, strict=True)
-        columns |= {name: np.full(len(points), value) for name, value in pairs}
-        return np.column_stack([columns[name] for name in self.surrogate.parameters])
-
-    @cached_property
-    def _rows(self) -> NDArray[np.int64]:
-        """The place of each measurement's quantity among the surrogate's responses."""
-        responses = self.surrogate.responses
-        return np.array([responses.index(entry.quantity) for entry in self.measurements])
-
-    def predicted(self, points: Floats) -> Floats:
-        """Return the surrogate at each measurement, (points, measurements)."""
-        predictions = np.empty((len(points), len(self.measurements)))
-        for conditions, numbers in self._places.items():
-            answers = self.surrogate.at(self._inputs(points, conditions))
-            predictions[:, numbers] = answers[self._rows[numbers]].T
-        return predictions
-
-    @cached_property
-    def measured(self) -> Floats:
-        """The measured values, (measurements,)."""
-        return np.array([measurement.value for measurement in self.measurements])
-
-    @cached_property
-    def error(self) -> Floats:
-        """The standard error of the surrogate at each measurement, (measurements,).
-
-        It is the root mean square over the prior: the error grows towards the ends of the ranges.
-        """
+        self._limits = np.array([[probability(n, float(end)) for end in pair] for n, *pair in ends])
+        responses = surrogate.responses
+        self._rows = np.array([responses.index(entry.quantity) for entry in measurements])
+        self.measured = np.array([measurement.value for measurement in measurements])
+        # root mean square over the prior: the error grows towards the ends of the ranges
         points = np.random.default_rng(_SEED).random((len(self.free), _POINTS)).T
-        error = np.empty(len(self.measurements))
-        for conditions, numbers in self._places.items():
-            widths = self.surrogate.errors(self._inputs(points, conditions))
-            error[numbers] = np.sqrt(np.mean(widths**2, axis=1))[self._rows[numbers]] / COVERAGE
-        return error
+        self.error = np.empty(len(measurements))
+        for inputs, numbers in self._places(points):
+            squares = np.mean(surrogate.errors(inputs) ** 2, axis=1)
+            self.error[numbers] = np.sqrt(squares)[self._rows[numbers]] / COVERAGE
+        self.covariance = self._covariance(numerical, model_error)
+        self._whitening = np.linalg.inv(np.linalg.cholesky(self.covariance))
 
-    @cached_property
-    def covariance(self) -> Floats:
-        """The covariance of all errors together, (measurements, measurements)."""
+    def _covariance(self, numerical: Mapping[str, float], model_error: float) -> Floats:
         quantities = np.array([measurement.quantity for measurement in self.measurements])
         sources = np.array([measurement.source for measurement in self.measurements])
         total = np.array([measurement.standard_uncertainty for measurement in self.measurements])
         systematic = np.array([entry.systematic_uncertainty for entry in self.measurements])
-        numerical = [self.numerical.get(name, 0.0) / 2.0 for name in quantities] * self.measured
-        of_model = self.model_error * self.measured
+        of_grid = [numerical.get(name, 0.0) / 2.0 for name in quantities] * self.measured
+        of_model = model_error * self.measured
         alike = quantities[:, None] == quantities
         common = alike & (sources[:, None] == sources)
         covariance = np.diag(total**2 - systematic**2) + np.outer(systematic, systematic) * common
@@ -171,12 +86,40 @@ class Likelihood:
         covariance = covariance + np.outer(self.error, self.error) * alike * np.exp(
             -distance / REACH
         )
-        shared = np.outer(numerical, numerical) + np.outer(of_model, of_model)
+        shared = np.outer(of_grid, of_grid) + np.outer(of_model, of_model)
         return np.asarray(covariance + shared * alike)
 
-    @cached_property
-    def _whitening(self) -> Floats:
-        return np.asarray(np.linalg.inv(np.linalg.cholesky(self.covariance)))
+    def _prior(self, points: Floats) -> Floats:
+        """Return the probabilities of the free parameters at points of the cube, of its shape."""
+        low, high = self._limits.T
+        return np.asarray(low + (high - low) * points)
+
+    def _places(self, points: Floats) -> Iterator[tuple[Floats, list[int]]]:
+        """Yield the probabilities of all parameters at points, (points, parameters).
+
+        They are those of one set of conditions, and come with the numbers of its measurements.
+        """
+        places: dict[tuple[float, ...], list[int]] = {}
+        for number, conditions in enumerate(self._conditions.tolist()):
+            places.setdefault(tuple(conditions), []).append(number)
+        for conditions, numbers in places.items():
+            columns = dict(zip(self.free, self._prior(points).T, strict=True))
+            pairs = zip(self._common, conditions, strict=True)
+            columns |= {name: np.full(len(points), value) for name, value in pairs}
+            yield np.column_stack([columns[name] for name in self.surrogate.parameters]), numbers
+
+    def values(self, points: Floats) -> Floats:
+        """Return the free parameters at points of the cube, in SI units, (points, free)."""
+        distributions = [distribution_of(self.surrogate.distribution(n)) for n in self.free]
+        columns = zip(distributions, self._prior(points).T, strict=True)
+        return np.array([distribution.quantile(column) for distribution, column in columns]).T
+
+    def predicted(self, points: Floats) -> Floats:
+        """Return the surrogate at each measurement, (points, measurements)."""
+        predictions = np.empty((len(points), len(self.measurements)))
+        for inputs, numbers in self._places(points):
+            predictions[:, numbers] = self.surrogate.at(inputs)[self._rows[numbers]].T
+        return predictions
 
     def squared(self, predicted: Floats) -> Floats:
         """Return the squared distance of predictions from the data, in all errors, (points,)."""
@@ -187,6 +130,18 @@ class Likelihood:
         """Return the logarithm of the likelihood, (points,)."""
         constant = np.linalg.slogdet(2 * np.pi * self.covariance)[1]
         return np.asarray(-0.5 * (self.squared(self.predicted(points)) + constant))
+
+
+def _contradictions(free: Sequence[str], measurements: Sequence[Measurement]) -> Iterator[str]:
+    """Yield the reasons why these parameters cannot be calibrated."""
+    for name in free:
+        if stating := [entry.quantity for entry in measurements if name in entry.conditions]:
+            yield f"{name}: is stated for {stating[0]} but not for all: state it for all, or none"
+    if not 0 < len(free) <= MOST:
+        yield (
+            f"{len(free)} parameters are left to calibrate ({', '.join(free) or 'none'}): vary 1 "
+            f"to {MOST} that no measurement states"
+        )
 
 
 def _mismatches(surrogate: Surrogate, measurements: Sequence[Measurement]) -> Iterator[str]:
