@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from impactlab import wings
-from impactlab.methods import NO_DISTRIBUTION
+from impactlab.methods import NO_DISTRIBUTION, SAMPLES
 from impactlab.methods.grid import Grid
 from impactlab.methods.sobol import Sobol
 
@@ -15,11 +15,10 @@ from impactlab.methods.sobol import Sobol
 class AnalysisEntry:
     """An analysis of the runs of a study.
 
-    place: path of an object in impactlab.analysis with `applies(runs)`, True where it can analyse
-    the runs, and `analysis(runs)`, its variables with `response` or `history` among their
-    coordinates. needs: the runs that it needs, in words. possible: whether a study has them, by its
-    method of sampling, the number of values on each axis of its grid, and whether it stores
-    histories.
+    place: path of an object in impactlab.analysis with `analysis(runs)`: its variables with
+    `response` or `history` among their coordinates, none where it cannot analyse the runs. needs:
+    the runs that it needs, in words. possible: whether a study has them, by its method of sampling,
+    the number of values on each axis of its grid, and whether it stores histories.
     """
 
     place: str
@@ -49,7 +48,7 @@ ANALYSES: dict[str, AnalysisEntry] = {
     "sensitivity": AnalysisEntry(
         "impactlab.analysis.sensitivity",
         "a sample (any method but grid)",
-        lambda method, *_: method != Grid.name(),
+        lambda method, *_: method in SAMPLES,
     ),
     "sensitivity_over_time": AnalysisEntry(
         "impactlab.analysis.sensitivity.over_time",
@@ -59,7 +58,7 @@ ANALYSES: dict[str, AnalysisEntry] = {
     "distribution": AnalysisEntry(
         "impactlab.analysis.distribution",
         f"a sample that represents it (any method but {' or '.join(NO_DISTRIBUTION)})",
-        lambda method, *_: method not in NO_DISTRIBUTION,
+        lambda method, *_: method in SAMPLES.keys() - NO_DISTRIBUTION.keys(),
     ),
     "surrogate": AnalysisEntry(
         "impactlab.analysis.surrogate",

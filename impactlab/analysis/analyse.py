@@ -58,8 +58,7 @@ def analyse(
     axes = {} if of_function(runs) else runs.sizes  # a function has no discretisation
     plan: Any = runs.attrs.get("method"), axes, True
     entries = [ANALYSES[name] for name in ANALYSES if name in names]
-    listed = (resolve_name(entry.place) for entry in entries if entry.possible(*plan))
-    parts = [module.analysis(runs) for module in listed if module.applies(runs)]
+    parts = [resolve_name(entry.place).analysis(runs) for entry in entries if entry.possible(*plan)]
     requested = xr.Dataset(coords=labels(runs))
     merged = xr.merge([requested, *parts], join="exact", compat="equals", combine_attrs="override")
     if "parameter" in merged.coords:

@@ -21,7 +21,7 @@ import scipy  # its stats are loaded when first used
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.methods import NO_DISTRIBUTION, independent_runs, sobol
+from impactlab.methods import independent_runs, sobol
 from impactlab.methods.runs import Sample, labels, listed, usable
 from impactlab.types import Floats
 from impactlab.verdicts import Verdict, flagged, names
@@ -40,12 +40,6 @@ class DistributionVerdict(Verdict):
         "draws are missing more often at some values of a parameter: mean, standard deviation and "
         "quantiles are those of the others, and biased",
     )
-
-
-def applies(runs: xr.Dataset) -> bool:
-    """Return whether the runs are draws of varied parameters."""
-    method = str(runs.attrs.get("method", "grid"))
-    return method not in NO_DISTRIBUTION and "run" in runs.dims and "varied" in runs.attrs
 
 
 def drawn_outputs(runs: xr.Dataset, response: str) -> Floats:

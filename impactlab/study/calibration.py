@@ -75,9 +75,7 @@ def calibrate(
     measurements = read_measurements(given, first)
     surrogates, numerical = {}, {}
     for name, solved in runs.items():
-        applies = surrogate.applies(solved)
-        fitted = surrogate.packed(solved, surrogate.analysis(solved)) if applies else None
-        if fitted is None:
+        if (fitted := surrogate.packed(solved, surrogate.analysis(solved))) is None:
             raise ValueError(
                 f"study {study.name!r}: its sample has no surrogate: draw numbers from "
                 "distributions (contact laws are weighed by --contact)"

@@ -48,10 +48,6 @@ class Axis:
     comment: Callable[[xr.Dataset], str]
     growth: Growth | None = None
 
-    def applies(self, runs: xr.Dataset) -> bool:
-        """Return whether the runs are a grid with three or more values on the axis."""
-        return any(runs.sizes.get(dim, 0) >= 3 for dim in self.spacings)
-
     def analysis(self, runs: xr.Dataset) -> xr.Dataset:
         """Judge every response at every point of the rest of the grid.
 

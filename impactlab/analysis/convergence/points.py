@@ -40,11 +40,6 @@ class PointsVerdict(Verdict):
     )
 
 
-def applies(runs: xr.Dataset) -> bool:
-    """Return True for a grid of two or more numbers of points."""
-    return runs.sizes.get("points", 0) >= 2
-
-
 def analysis(runs: xr.Dataset) -> xr.Dataset:
     """Judge the points convergence of every response at every point of the rest of the grid.
 

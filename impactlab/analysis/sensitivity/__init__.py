@@ -4,4 +4,3 @@ The estimators are in impactlab.methods, one file per method.
 """
 
 from impactlab.analysis.sensitivity.indices import analysis as analysis
-from impactlab.analysis.sensitivity.indices import applies as applies

@@ -18,11 +18,6 @@ from impactlab.types import Floats
 from impactlab.verdicts import flagged
 
 
-def applies(runs: xr.Dataset) -> bool:
-    """Return True for the runs of a method that has indices."""
-    return bool(indices_of(runs.attrs))
-
-
 def analysis(runs: xr.Dataset) -> xr.Dataset:
     """Return sensitivity indices of every response, by the methods the sample was drawn for.
 

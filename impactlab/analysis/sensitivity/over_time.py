@@ -65,11 +65,6 @@ def histories(runs: xr.Dataset) -> list[str]:
     return [name for name in SHOWN if of_sample and name in runs and "time" in runs[name].dims]
 
 
-def applies(runs: xr.Dataset) -> bool:
-    """Return True for a Sobol sample that stores histories."""
-    return bool(histories(runs))
-
-
 def analysis(runs: xr.Dataset) -> xr.Dataset:
     """Return the indices of contact force and deflection on `time`, and their generalised indices.
 
@@ -78,11 +73,14 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     _interval, the half-width of the interval; time_verdict (history, time) and
     history_verdict (history), which say why there is none; history_mean and history_deviation
     (history, time), in the unit of each history; and base_samples_left_out (history), those with a
-    failed run. `parameter` holds the varied parameters, or their groups.
+    failed run. `parameter` holds the varied parameters, or their groups. Nothing of other runs than
+    a Sobol sample with stored histories.
 
     Raises ValueError when the runs are not the sample that their attributes describe.
     """
-    sample, names = Sample.of(runs), histories(runs)
+    if not (names := histories(runs)):
+        return xr.Dataset()
+    sample = Sample.of(runs)
     check(sample)
     rows = [_of_history(sample, name) for name in names]
     values = {key: np.stack([row[key] for row in rows]) for key in rows[0]}

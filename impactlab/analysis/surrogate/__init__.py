@@ -7,6 +7,5 @@ response of a sample with its test and Sobol indices, `load_surrogate(path)` tho
 
 from impactlab.analysis.surrogate.chaos import fit as fit
 from impactlab.analysis.surrogate.from_runs import analysis as analysis
-from impactlab.analysis.surrogate.from_runs import applies as applies
 from impactlab.analysis.surrogate.stored import load_surrogate as load_surrogate
 from impactlab.analysis.surrogate.stored import packed as packed

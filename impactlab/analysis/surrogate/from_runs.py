@@ -26,7 +26,7 @@ _FOLDS = 5  # parts of a sample; each is predicted by a fit to the others
 _FEWEST_TESTS, _MOST_TESTS = 10, 4000
 
 
-def applies(runs: xr.Dataset) -> bool:
+def _can_be_fitted(runs: xr.Dataset) -> bool:
     """Return True if the runs are a sample of independent numbers with distributions."""
     if "run" not in runs.dims or correlations(runs):
         return False
@@ -170,9 +170,12 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
 
     Returns the variables of _NUMBERS as surrogate_<name> on `response` and the dimensions there,
     NaN where a response has no surrogate; surrogate_degree (surrogate_term, surrogate_input), of
-    the coefficients' terms (see `basis`); and surrogate_verdict (response). Raises ValueError when
-    the number of runs does not fit the sample.
+    the coefficients' terms (see `basis`); and surrogate_verdict (response). Nothing unless the
+    runs are a sample of independent numbers with distributions. Raises ValueError when the number
+    of runs does not fit the sample.
     """
+    if not _can_be_fitted(runs):
+        return xr.Dataset()
     divided, names = Divided.of(runs), listed(runs, "responses")
     sample = divided.sample
     with threadpool_limits(limits=1):  # the same bits on any number of processors

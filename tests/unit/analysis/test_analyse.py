@@ -93,7 +93,7 @@ def test_a_study_without_either_gets_its_responses_alone(grid_runs):
 def test_a_new_analysis_is_one_line(discretisation, sample, monkeypatch):
     """Studies can ask for it, are told where it is impossible, and it is made."""
     largest = xr.Dataset({"largest": discretisation["peak_force"].max()})
-    module = SimpleNamespace(applies=lambda runs: "nodes" in runs.dims, analysis=lambda _: largest)
+    module = SimpleNamespace(analysis=lambda _: largest)
     monkeypatch.setitem(sys.modules, "impactlab.analysis.largest", module)
     entry = AnalysisEntry(
         "impactlab.analysis.largest", "a grid", lambda method, *_: method == "grid"

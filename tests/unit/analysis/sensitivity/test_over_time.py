@@ -191,9 +191,9 @@ def test_the_table_has_generalised_indices_and_the_file_all(oscillating):
 
 def test_only_a_sobol_sample_with_histories_has_them(oscillating):
     runs = oscillating(64)
-    assert over_time.applies(runs)
-    assert not over_time.applies(runs.drop_vars("contact_force"))
-    assert not over_time.applies(runs.assign_attrs(method="delta"))
+    assert over_time.analysis(runs)
+    assert not over_time.analysis(runs.drop_vars("contact_force"))
+    assert not over_time.analysis(runs.assign_attrs(method="delta"))
     assert "generalised_first_order" not in analyse(runs.assign_attrs(analyses="sensitivity"))
     # a history that is the same in all runs has no index
     runs = oscillating(64)

@@ -7,7 +7,7 @@ from SALib.sample import fast_sampler
 from sklearn.linear_model import LinearRegression
 from threadpoolctl import threadpool_limits
 
-from impactlab.analysis.surrogate import applies
+from impactlab.analysis.surrogate import analysis
 from impactlab.analysis.surrogate.chaos import MOST_RUNS, basis, drawn, fit
 from impactlab.analysis.surrogate.from_runs import Divided
 
@@ -66,11 +66,11 @@ def test_runs_that_are_no_whole_sample_are_refused(drawn_runs):
         Divided.of(runs)
     # what counts as a sample
     runs = drawn_runs(peak_force=first)
-    assert applies(runs)
+    assert analysis(runs)
     grid = xr.Dataset(coords={"velocity": [1.0, 2.0]}, attrs={"varied": ["velocity"]})
-    assert not applies(grid)
+    assert not analysis(grid)
     runs["velocity"].attrs.pop("distribution")
-    assert not applies(runs)
+    assert not analysis(runs)
 
 
 @pytest.fixture
