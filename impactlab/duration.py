@@ -44,5 +44,5 @@ def too_short(cases: Any, status: Any) -> str:
     slow = cases["velocity"] < 3.0 * cases["gravity"] * swing(cases)
     if ((swings == 1.0) & (slow | (lasting < seconds))).any():
         remedy = "try a longer one; at its end, too, the beam may be moving up behind the sphere"
-    runs = f" in {cases.size:,} of {status.size:,} runs" * (status.size > 1)
+    runs = f" in {cases.size:,} of {status.size:,} runs" if status.size > 1 else ""
     return f"duration = {engineering(seconds, 's')} is too short for {names}{runs}: {remedy}"

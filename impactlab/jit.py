@@ -106,8 +106,8 @@ def cache_folder(sources_hash: str) -> Path | None:
         features = binding.get_host_cpu_features().flatten()
     tools = sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__
     machine = hashlib.sha256(f"{name} {features} {tools}".encode()).hexdigest()[:8]
-    given = os.environ.get("NUMBA_CACHE_DIR")
-    root = Path(given) if given else platformdirs.user_cache_path("impactlab")
+    setting = os.environ.get("NUMBA_CACHE_DIR")
+    root = Path(setting) if setting else platformdirs.user_cache_path("impactlab")
     folder = root / f"kernels-{sources_hash[:16]}-{machine}"
     try:
         if not folder.exists():
@@ -317,8 +317,8 @@ def precompile(kernel: Any, program: str) -> None:
     cache = getattr(kernel, "_cache", None)
     if not isinstance(cache, KernelCache) or _COMPILES in os.environ or not sys.executable:
         return
-    here = str(Path(__file__).resolve().parents[1])  # the same package, wherever it was found
-    paths = os.pathsep.join(filter(None, [here, os.environ.get("PYTHONPATH")]))
+    root = str(Path(__file__).resolve().parents[1])  # the same package, wherever it was found
+    paths = os.pathsep.join(filter(None, [root, os.environ.get("PYTHONPATH")]))
     try:
         with FileLock(cache.folder / f"{cache.name}.lock"):
             if any(_read(path) for path in cache.folder.glob(cache.files.format("*"))):

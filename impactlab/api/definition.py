@@ -68,6 +68,10 @@ class Study(StudyFolder):
 
     Attributes
     ----------
+    name : str
+        Name of the study, and of its folder: letters, digits, _ and -.
+    title : str
+        Title, one line, which heads the report.
     folder : pathlib.Path
         Folder of the results: `results`/`name`.
     declared : object
@@ -231,10 +235,10 @@ def _problems_at(key: str) -> Iterator[None]:
 
 
 def _check_names(python: Iterable[str]) -> None:
-    taken = {*PARAMETERS, *VARIABLES, *FLAGS}
+    variables = {*PARAMETERS, *VARIABLES, *FLAGS}
     for name in python:
-        if not name.isidentifier() or name in taken:
-            why = "another variable has it" if name in taken else "use letters, digits and _"
+        if not name.isidentifier() or name in variables:
+            why = "another variable has it" if name in variables else "use letters, digits and _"
             problem = Problem("Study", f"responses.{name}", f"cannot name a response: {why}")
             raise StudyError(problem)
 

@@ -10,11 +10,11 @@ from impactlab.analysis.analyse import analyse
 from impactlab.analysis.measurements import compared
 from impactlab.api.definition import Study
 from impactlab.api.folder import CORES, local_engine
-from impactlab.study.schema.measurement_files import Given, read_measurements
+from impactlab.study.schema.measurement_files import MeasurementSource, read_measurements
 
 
 def compare(
-    runs: xr.Dataset, measurements: Given, analysis: xr.Dataset | None = None
+    runs: xr.Dataset, measurements: MeasurementSource, analysis: xr.Dataset | None = None
 ) -> xr.Dataset:
     """Compare the runs of a grid with measurements: values, uncertainties and verdicts.
 
@@ -55,13 +55,13 @@ def compare(
     >>> found.compared_verdict.attrs["flag_meanings"].split()[found.compared_verdict.item()]
     'compatible'
     """
-    found = analyse(runs) if analysis is None else analysis
-    return compared(runs, found, read_measurements(measurements, runs))
+    analysis = analyse(runs) if analysis is None else analysis
+    return compared(runs, analysis, read_measurements(measurements, runs))
 
 
 def calibrate(
     study: Study,
-    measurements: Given,
+    measurements: MeasurementSource,
     *,
     contact: Sequence[str] = (),
     model_error: float = 0.0,
@@ -120,6 +120,8 @@ def calibrate(
     from impactlab.report.calibration import draw_and_tell
     from impactlab.study.calibration import calibrate as calibration
 
-    names = study.declared, study.folder, measurements, local_engine(workers), contact, model_error
-    found = calibration(*names)
-    return found.assign_attrs(answer="\n".join(draw_and_tell(found, study.folder)))
+    engine = local_engine(workers)
+    posterior = calibration(
+        study.declared, study.folder, measurements, engine, contact, model_error
+    )
+    return posterior.assign_attrs(answer="\n".join(draw_and_tell(posterior, study.folder)))

@@ -32,31 +32,8 @@ class StudyFolder:
     def __init__(self, declared: AnyStudy, results: str | Path) -> None:
         """Take a study as read, and the folder of all results."""
         self.declared = declared
-        """The study as read: impact, discretisation, sampling and the others in SI units."""
-        self.folder = steps.results_folder(declared.name, Path(results))
-        """The folder of the results."""
-
-    @property
-    def name(self) -> str:
-        """Name of the study, and of its folder.
-
-        Returns
-        -------
-        str
-            Letters, digits, _ and -.
-        """
-        return self.declared.name
-
-    @property
-    def title(self) -> str:
-        """Title, which heads the report.
-
-        Returns
-        -------
-        str
-            One line.
-        """
-        return self.declared.title
+        self.name, self.title = declared.name, declared.title
+        self.folder = steps.results_folder(self.name, Path(results))
 
     def design(self) -> xr.Dataset:
         """Return the coordinates of all runs.
@@ -248,9 +225,9 @@ class StudyFolder:
         """
         from impactlab.report.results import RUNS
 
-        found = self.analyse()
+        analysis = self.analyse()
         with checked(self._runs(), "runs", blocks=True) as solved:
-            return RUNS.draw(solved, found, self.folder / "figures")
+            return RUNS.draw(solved, analysis, self.folder / "figures")
 
     def report(self, path: str | Path | None = None) -> Path:
         """Analyse, draw, and write the report, one file.
@@ -277,10 +254,10 @@ class StudyFolder:
 
         path = self.folder / "report.html" if path is None else Path(path)
         check_suffix("path", path, (".html",))
-        found, figures = self.analyse(), self.folder / "figures"
+        analysis, figures = self.analyse(), self.folder / "figures"
         with checked(self._runs(), "runs", blocks=True) as solved:
-            RUNS.draw(solved, found, figures)
-            RUNS.write(solved, found, figures, path)
+            RUNS.draw(solved, analysis, figures)
+            RUNS.write(solved, analysis, figures, path)
             write_crate(solved, self.folder, figures, path)
         return path
 
@@ -302,4 +279,4 @@ def local_engine(workers: int, processes: bool = False, client: Client | None = 
     from impactlab.study.engine import Engine
 
     workers = integer("run", "workers", workers, 1)
-    return Engine("processes" if processes else "threads", workers, own=client)
+    return Engine("processes" if processes else "threads", workers, dask_client=client)

@@ -24,7 +24,7 @@ from impactlab.study import CALIBRATION, steps
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
 from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
-from impactlab.study.schema.measurement_files import Given, read_measurements
+from impactlab.study.schema.measurement_files import MeasurementSource, read_measurements
 from impactlab.study.schema.readers import of_impacts, study_of_content
 from impactlab.study.schema.yaml_file import read_mapping
 from impactlab.validation.errors import Problem, StudyError, unknown
@@ -40,7 +40,7 @@ OFF = 2.0
 def calibrate(
     study: AnyStudy,
     folder: Path,
-    given: Given,
+    measured: MeasurementSource,
     engine: Engine,
     laws: Sequence[str] = (),
     model_error: float = 0.0,
@@ -70,9 +70,9 @@ def calibrate(
         reason = f"{study.sampling.no_surrogate}: take them out"
         raise StudyError(Problem(str(study.path), "sampling.correlations", reason))
     models = list(_models(study, folder, laws))  # all of them right before one is solved
-    runs = {name: _solved(each, where, engine) for name, each, where in models}
+    runs = {name: _solved(variant, place, engine) for name, variant, place in models}
     first = next(iter(runs.values()))
-    measurements = read_measurements(given, first)
+    measurements = read_measurements(measured, first)
     surrogates, numerical = {}, {}
     for name, solved in runs.items():
         if (fitted := surrogate.packed(solved, surrogate.analysis(solved))) is None:
@@ -191,7 +191,8 @@ def _confirmed(
     ratio = error / np.maximum(
         posterior["surrogate_error"], 0.1 * posterior["measured_uncertainty"] / 2
     )
-    for row in np.flatnonzero(ratio > OFF)[:1]:
+    if (ratio > OFF).any():
+        row = int(ratio.argmax())
         measurement = measurements[row]
         raise ValueError(
             f"{measurement.quantity}: at the posterior the surrogate is off by {error[row]:.3g} "

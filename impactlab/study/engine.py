@@ -43,7 +43,7 @@ _SETTINGS = {
 class Engine:
     """The place where batches are solved.
 
-    That is a client of one's own where it is given, a running dask scheduler where an address is,
+    That is a client that is there already where one is given, a running dask scheduler where an address is,
     Slurm jobs where a profile is, else threads or processes of this machine. Schedulers and
     dashboards that are started here listen on the loopback alone, except the scheduler of Slurm
     jobs, which listens on the profile's interface. dask's own configuration applies, TLS included.
@@ -55,7 +55,7 @@ class Engine:
     profile: Profile | None = None
     batch_seconds: float = 2.0
     """Duration of a task, roughly."""
-    own: Client | None = None
+    dask_client: Client | None = None
     """A client that somebody else has made, and closes."""
 
     @contextmanager
@@ -64,10 +64,10 @@ class Engine:
 
         Raises ValueError for an asynchronous client of one's own.
         """
-        if self.own is not None:
-            if self.own.asynchronous:
+        if self.dask_client is not None:
+            if self.dask_client.asynchronous:
                 raise ValueError("client: is asynchronous: give Client(..., asynchronous=False)")
-            yield self.own
+            yield self.dask_client
             return
         for name in _LOGGERS:  # errors are raised and reported by the command
             logging.getLogger(name).setLevel(logging.CRITICAL)

@@ -134,7 +134,7 @@ def estimate(study: AnyStudy, folder: Path, workers: int) -> Estimate:
     existing = next(
         ancestor for ancestor in (folder, *folder.resolve().parents) if ancestor.exists()
     )
-    own = sum(stat.st_size for stat in file_stats(folder.rglob("*")))
+    occupied = sum(stat.st_size for stat in file_stats(folder.rglob("*")))
     file, doubted = str(study.path), []
     until = study.sampling.until if isinstance(study.sampling, Sobol) else None
     runs = max(study.sampling.runs, until.runs if until else 0)
@@ -172,7 +172,7 @@ def estimate(study: AnyStudy, folder: Path, workers: int) -> Estimate:
         seconds=max(float(sampled.mean()) * runs, largest),
         memory=_PROGRAM + answers + runs * _PER_RUN + working,
         disk=_ON_DISK * _NUMBER * runs * float(stored),
-        free=float(disk_usage(existing).free + own),
+        free=float(disk_usage(existing).free + occupied),
         largest=largest,
         largest_run=largest_run,
         slow=slow,

@@ -49,7 +49,7 @@ def open_runs(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterat
             index.done[index.find(keys)[1]] = True
         missing, repeats = np.flatnonzero(~index.done), index.size - index.distinct
         before = index.distinct - missing.size
-        equal = f" ({repeats} more are equal to one of them)" * bool(repeats)
+        equal = f" ({repeats} more are equal to one of them)" if repeats else ""
         log.info("%d runs%s, %d of them solved before", index.distinct, equal, before)
         if missing.size:
             bits = solver.failures(design)
@@ -59,10 +59,13 @@ def open_runs(design: xr.Dataset, shards_folder: Path, engine: Engine) -> Iterat
                     index.done[runs] = True
                     advance(runs.size, int(np.count_nonzero(columns["status"] & bits)))
         shards.merge()
-        answers = open_answers(shards, index, solver.columns(design))
+        names = solver.columns(design)
         # HDF5 is not for two threads
-        with answers as found, dask.config.set(scheduler="synchronous"):
-            yield solver.labelled(design, found)
+        with (
+            open_answers(shards, index, names) as answers,
+            dask.config.set(scheduler="synchronous"),
+        ):
+            yield solver.labelled(design, answers)
 
 
 def execute(design: xr.Dataset, shards_folder: Path, engine: Engine) -> xr.Dataset:
@@ -209,7 +212,7 @@ class Batches:
         """
         alone = np.where(cost[runs] > _SPEED * seconds, cost[runs], 0.0)
         self._runs, self._costs = runs[np.argsort(-alone, kind="stable")], cost
-        self._wished = seconds
+        self._target = seconds
         self._most = max(1, min(_RUNS, _VALUES // values))
         self._at, self._left = 0, float(cost[runs].sum())
         self._cost = self._seconds = 0.0
@@ -219,13 +222,13 @@ class Batches:
         ahead = self._runs[self._at : self._at + self._most]
         until = np.cumsum(self._costs[ahead])
         speed = self._cost / self._seconds if self._seconds else _SPEED
-        wished = self._wished if self._seconds else min(self._wished, _FIRST_SECONDS)
+        target = self._target if self._seconds else min(self._target, _FIRST_SECONDS)
         share = self._left / speed / workers
-        seconds = min(wished, max(share / _SHARE, _LEAST_SECONDS))
-        taken = max(1, int(np.searchsorted(until, speed * seconds, side="right")))
-        self._at += ahead[:taken].size
-        self._left -= float(self._costs[ahead[:taken]].sum())
-        return ahead[:taken]
+        seconds = min(target, max(share / _SHARE, _LEAST_SECONDS))
+        batch = ahead[: max(1, int(np.searchsorted(until, speed * seconds, side="right")))]
+        self._at += batch.size
+        self._left -= float(self._costs[batch].sum())
+        return batch
 
     def learn(self, cost: float, seconds: float) -> None:
         """Size further batches by the duration of one."""

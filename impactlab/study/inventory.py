@@ -63,7 +63,7 @@ class Work:
             try:
                 cases = solver.cases(design, runs[start : start + _CHUNK])
             except ValueError as error:
-                advice = f": {BOUND_IT}" * ("run" in design.dims)  # drawn
+                advice = f": {BOUND_IT}" if "run" in design.dims else ""  # drawn
                 raise ValueError(f"{error}{advice}") from None
             keys.append(run_keys(cases, output, solver.version))
             cost.append(solver.cost(cases))

@@ -29,15 +29,15 @@ def _console() -> Console:
 
 
 @contextmanager
-def items_done(total: int, done: int, what: str) -> Iterator[Callable[[int, int], None]]:
+def items_done(total: int, done: int, items: str) -> Iterator[Callable[[int, int], None]]:
     """Show a bar of `total` items, `done` of them before: their number, speed and failures.
 
-    what: the name of the items. The function that it gives counts so many more done, and those of
+    items: their name. The function that it gives counts so many more done, and those of
     them that failed.
     """
     console, failed, fresh = _console(), 0, 0
     columns = (
-        TextColumn(what),
+        TextColumn(items),
         BarColumn(),
         MofNCompleteColumn(),
         TextColumn("{task.fields[rate]}"),
@@ -45,24 +45,24 @@ def items_done(total: int, done: int, what: str) -> Iterator[Callable[[int, int]
         TextColumn("{task.fields[failed]} failed"),
     )
     with Progress(*columns, console=console, disable=not console.is_terminal) as bar:
-        task = bar.add_task(what, total=total, completed=done, failed=0, rate="")
+        task = bar.add_task(items, total=total, completed=done, failed=0, rate="")
 
         def advance(more: int, failures: int) -> None:
             nonlocal failed, fresh
             failed, fresh = failed + failures, fresh + more
             elapsed = bar.tasks[task].elapsed or 0.0
             speed = fresh / elapsed if elapsed > 0 else 0.0
-            rate = f"{speed:,.0f} {what}/s" if speed >= 1 else ""
+            rate = f"{speed:,.0f} {items}/s" if speed >= 1 else ""
             bar.update(task, advance=more, failed=failed, rate=rate)
 
         yield advance
 
 
 @contextmanager
-def share_done(what: str) -> Iterator[Callable[[float], None]]:
+def share_done(title: str) -> Iterator[Callable[[float], None]]:
     """Show a bar for one long run; the function that it gives takes the share done, 0 to 1."""
     console = _console()
-    columns = (TextColumn(what), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
+    columns = (TextColumn(title), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, disable=not console.is_terminal) as bar:
-        task = bar.add_task(what, total=1.0)
+        task = bar.add_task(title, total=1.0)
         yield lambda share: bar.update(task, completed=share)

@@ -287,17 +287,18 @@ def analyse_runs(
     from impactlab.methods.runs import listed
     from impactlab.study.schema.measurement_files import read_measurements
 
-    given = {"resolution": resolution, "refinement": refinement}
-    evidence = {name: read_netcdf(file, name) for name, file in given.items() if file}
+    files = {"resolution": resolution, "refinement": refinement}
+    evidence = {name: read_netcdf(file, name) for name, file in files.items() if file}
     with checked(runs, "runs") as solved:
         if refinement:
             check_source(evidence["refinement"], refinement, solved, runs)
         sources = solved, *evidence.values()
         analysis = analyse(solved, **evidence)
         if "measurements" in solved.attrs:
-            files = listed(solved, "measurements")
             measured = [
-                measurement for file in files for measurement in read_measurements(file, solved)
+                measurement
+                for file in listed(solved, "measurements")
+                for measurement in read_measurements(file, solved)
             ]
             analysis = analysis.merge(compared(solved, analysis, measured))
         write_netcdf(analysis, path, "analysis", *sources)
@@ -335,7 +336,9 @@ def check(verification: Verification) -> xr.Dataset:
 def failure(outcomes: Sequence[Outcome]) -> str:
     """Return a sentence about the checks that failed; "" where none did."""
     reasons = []
-    for outcome in (each for each in outcomes if each.verdict != "passed"):
+    for outcome in outcomes:
+        if outcome.verdict == "passed":
+            continue
         failed, total = len(outcome.failures), len(outcome.finding.comparisons)
         counted = f"{failed} of {total} comparisons" if total else "it compared nothing"
         reasons.append(f"{outcome.name}: {outcome.reason or counted}")

@@ -53,10 +53,10 @@ class OutputSpec:
 
 def run_keys(cases: Array, output: OutputSpec, version: str) -> Array:
     """Return one key of 16 bytes per case, shape (cases,); cases are compared by their bytes."""
-    given = hashlib.sha256(f"{version} {output} {cases.dtype.descr}".encode()).digest()
+    solver = hashlib.sha256(f"{version} {output} {cases.dtype.descr}".encode()).digest()
     rows, size = memoryview(cases.tobytes()), cases.dtype.itemsize
     digests = [
-        blake2b(rows[start : start + size], digest_size=KEY.itemsize, key=given).digest()
+        blake2b(rows[start : start + size], digest_size=KEY.itemsize, key=solver).digest()
         for start in range(0, len(rows), size)
     ]
     return np.frombuffer(b"".join(digests), dtype=KEY)
@@ -67,8 +67,8 @@ class Shards:
 
     def __init__(self, folder: Path, output: OutputSpec, version: str) -> None:
         """Look in `folder`/<hash of solver version, output and layout>, made by a first write."""
-        given = f"{version} {output} {LAYOUT}"
-        self.folder = folder / hashlib.sha256(given.encode()).hexdigest()[:16]
+        form = f"{version} {output} {LAYOUT}"
+        self.folder = folder / hashlib.sha256(form.encode()).hexdigest()[:16]
         self._small: dict[Path, tuple[Array, Columns]] = {}  # kept in memory until merged
 
     def read(self, *names: str) -> Iterator[tuple[Array, Columns]]:
@@ -81,8 +81,8 @@ class Shards:
         while fresh := [path for path in shard_files(self.folder) if path not in seen]:
             seen.update(fresh)
             for path in fresh:
-                if found := sound_runs(path, *names):
-                    yield found
+                if runs := sound_runs(path, *names):
+                    yield runs
 
     def recover(self) -> Iterator[Array]:
         """Yield the keys of every sound shard, and tidy up; only for the process that writes here.
@@ -93,12 +93,12 @@ class Shards:
         for unfinished in unfinished_files(self.folder):
             unfinished.unlink()
         for path in shard_files(self.folder):
-            if not (found := sound_runs(path)):
+            if not (runs := sound_runs(path)):
                 path.replace(path.with_name(path.name + DAMAGED))
                 continue
-            if _size(*found) < _SMALL:
-                self._small[path] = found
-            yield found[0]
+            if _size(*runs) < _SMALL:
+                self._small[path] = runs
+            yield runs[0]
 
     def write(self, keys: Array, columns: Columns) -> Path:
         """Write runs and return their file, named for their keys.
@@ -120,8 +120,8 @@ class Shards:
             return
         keys, columns = joined(merged.values())
         _, first = np.unique(keys, return_index=True)
-        kept = self.write(keys[first], {name: values[first] for name, values in columns.items()})
-        for path in merged.keys() - {kept}:
+        large = self.write(keys[first], {name: values[first] for name, values in columns.items()})
+        for path in merged.keys() - {large}:
             path.unlink()
 
 
@@ -137,7 +137,7 @@ def _size(keys: Array, columns: Columns) -> int:
 def joined(parts: Iterable[tuple[Array, Columns]]) -> tuple[Array, Columns]:
     """Return keys and columns of several batches or shards as those of one."""
     keys, columns = zip(*parts, strict=True)
-    together = {name: np.concatenate([each[name] for each in columns]) for name in columns[0]}
+    together = {name: np.concatenate([part[name] for part in columns]) for name in columns[0]}
     return np.concatenate(keys), together
 
 
@@ -145,8 +145,8 @@ def sound_runs(path: Path, *names: str) -> tuple[Array, Columns] | None:
     """Return keys and columns (all by default) of a shard; None where it is damaged or gone."""
     try:
         with closing(Shard(path)) as shard:
-            wanted = (KEYS, *names) if names else shard.names
-            columns = {name: shard.read(name) for name in wanted}
+            names = (KEYS, *names) if names else shard.names
+            columns = {name: shard.read(name) for name in names}
         return columns.pop(KEYS), columns
     except FileNotFoundError:  # merged into another meanwhile
         return None

@@ -60,8 +60,8 @@ def refused_corner(base: Base, extremes: Mapping[str, Iterable[Value]]) -> Refus
     """
     for names in _by_owner(extremes).values():
         for corner in product(*(extremes[name] for name in names)):
-            if found := refusal(base, dict(zip(names, corner, strict=True))):
-                return found
+            if refused := refusal(base, dict(zip(names, corner, strict=True))):
+                return refused
     return None
 
 
@@ -70,8 +70,8 @@ def check_alone(parameter: Parameter, value: Value) -> Value:
 
     A parameter of a test function, which is no part of the model, can have any value.
     """
-    if parameter.path and (found := refusal(_ROOMY, {parameter.name: value})):
-        raise ValueError(found.reason)
+    if parameter.path and (refused := refusal(_ROOMY, {parameter.name: value})):
+        raise ValueError(refused.reason)
     return value
 
 

@@ -285,4 +285,4 @@ class Verification(Declared):
     @property
     def size(self) -> str:
         """Describe the amount of work."""
-        return f"{len(self.checks)} check{'s' * (len(self.checks) > 1)}"
+        return "1 check" if len(self.checks) == 1 else f"{len(self.checks)} checks"

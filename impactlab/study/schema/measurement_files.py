@@ -38,7 +38,7 @@ from impactlab.validation.stated import plain
 from impactlab.variables import RESPONSES, of_function
 
 Conditions = Mapping[str, Any]
-Given = str | Path | Mapping[str, Any]
+MeasurementSource = str | Path | Mapping[str, Any]
 """A file, or a mapping of the keys that a file has."""
 
 
@@ -113,7 +113,7 @@ class _File(Heading):
 
 
 def read_measurements(
-    measurements: Given, runs: xr.Dataset | None = None
+    measurements: MeasurementSource, runs: xr.Dataset | None = None
 ) -> tuple[Measurement, ...]:
     """Read measurements: a file, or a mapping of the keys that a file has (docs/measurements.md).
 

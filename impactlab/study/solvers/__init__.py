@@ -31,8 +31,8 @@ def flattened(design: xr.Dataset, name: str, runs: Array) -> Array:
     """Return a parameter in these runs, numbered along the dimensions in C order: shape (runs,)."""
     dims, shape = run_shape(design)
     places = np.unravel_index(runs, shape)
-    own = tuple(places[dims.index(str(dim))] for dim in design[name].dims)
-    values: Array = np.broadcast_to(design[name].values[own], runs.shape)
+    indices = tuple(places[dims.index(str(dim))] for dim in design[name].dims)
+    values: Array = np.broadcast_to(design[name].values[indices], runs.shape)
     return values
 
 
@@ -44,8 +44,10 @@ def on_design(
     function = {"function": design.attrs["function"]}
     attrs = {name: {**entry, **function} for name, entry in attrs.items()}
     attrs["status"] = attributes("status")
-    values = {name: (dims, each.reshape(shape), attrs.get(name)) for name, each in answers.items()}
-    return design.assign(values).assign_attrs(provenance())
+    variables = {
+        name: (dims, values.reshape(shape), attrs.get(name)) for name, values in answers.items()
+    }
+    return design.assign(variables).assign_attrs(provenance())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +92,7 @@ SOLVERS = {
 def solver_named(name: str) -> Solver:
     """Return a solver. Raises ValueError for Python functions that this process does not know."""
     if name.startswith("own "):
-        own: Solver = resolve_name("impactlab.study.solvers.own:solver")(name)
-        return own
-    found: Solver = resolve_name(SOLVERS[name])
-    return found
+        solver: Solver = resolve_name("impactlab.study.solvers.own:solver")(name)
+    else:
+        solver = resolve_name(SOLVERS[name])
+    return solver

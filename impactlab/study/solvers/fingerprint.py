@@ -49,10 +49,10 @@ def _tokens(value: Any, name: str, seen: set[int]) -> Iterator[str]:
 def _content(value: Any, name: str, seen: set[int]) -> Iterator[str]:
     match value:
         case tuple() | list():
-            for each in value:
-                yield from _tokens(each, name, seen)
+            for item in value:
+                yield from _tokens(item, name, seen)
         case set() | frozenset():
-            yield from sorted(" ".join(_tokens(each, name, seen)) for each in value)
+            yield from sorted(" ".join(_tokens(item, name, seen)) for item in value)
         case dict():
             yield from _tokens([*value.items()], name, seen)
         case np.ndarray() if value.dtype.kind == "O":
@@ -83,8 +83,8 @@ def _code(value: Any, name: str, seen: set[int]) -> Iterator[str]:
         case ModuleType():
             yield sha256(Path(str(value.__file__)).read_bytes()).hexdigest()
         case type():
-            own = {key: each for key, each in vars(value).items() if isinstance(each, FunctionType)}
-            yield from _tokens((value.__bases__, own), name, seen)
+            methods = {k: part for k, part in vars(value).items() if isinstance(part, FunctionType)}
+            yield from _tokens((value.__bases__, methods), name, seen)
         case _:
             raise ValueError(
                 f"{name} is of type {type(value).__name__}, which cannot be identified, so that "
@@ -95,10 +95,9 @@ def _code(value: Any, name: str, seen: set[int]) -> Iterator[str]:
 
 def _globals(code: CodeType) -> set[str]:
     """Return the names of globals that the code uses, that of inner functions included."""
-    names = {
-        str(each.argval) for each in dis.get_instructions(code) if each.opname == "LOAD_GLOBAL"
-    }
-    return names.union(*(_globals(one) for one in code.co_consts if isinstance(one, CodeType)))
+    steps = dis.get_instructions(code)
+    names = {str(step.argval) for step in steps if step.opname == "LOAD_GLOBAL"}
+    return names.union(*(_globals(part) for part in code.co_consts if isinstance(part, CodeType)))
 
 
 def _package(value: Any) -> str:

@@ -33,9 +33,9 @@ def solve(cases: Array, output: OutputSpec) -> Columns:
     """Return the function's value at each point; nothing can fail."""
     value = np.zeros(cases.size)
     for name in np.unique(cases["function"]).tolist():
-        here = cases["function"] == name
+        rows = cases["function"] == name
         function = FUNCTIONS[name]
-        value[here] = function.value(cases["x"][here, : len(function.ranges)])
+        value[rows] = function.value(cases["x"][rows, : len(function.ranges)])
     return {VALUE: value, "status": np.zeros(cases.size, dtype=np.int32)}
 
 

@@ -78,13 +78,13 @@ def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
 
 def prepare(design: xr.Dataset) -> None:
     """Compile the kernels of a design's beam models, schemes and options."""
-    given, grid = base(design)
-    models = np.unique(design.get("beam_model", given.beam_model)).tolist()
+    impact, grid = base(design)
+    models = np.unique(design.get("beam_model", impact.beam_model)).tolist()
     schemes = np.unique(design.get("scheme", grid.scheme)).tolist()
-    patch = np.atleast_1d(design.get("load", given.load)) == "contact_patch"
-    rate = np.atleast_1d(design.get("beam_rate_coefficient", given.beam.material.rate_coefficient))
-    strip = np.atleast_1d(design.get("contact_compliance", given.contact_compliance)) == "strip"
-    stress = np.atleast_1d(design.get("contact_prestress", given.contact_prestress)) == "bending"
+    patch = np.atleast_1d(design.get("load", impact.load)) == "contact_patch"
+    rate = np.atleast_1d(design.get("beam_rate_coefficient", impact.beam.material.rate_coefficient))
+    strip = np.atleast_1d(design.get("contact_compliance", impact.contact_compliance)) == "strip"
+    stress = np.atleast_1d(design.get("contact_prestress", impact.contact_prestress)) == "bending"
     options = np.meshgrid(patch, rate > 0.0, strip, stress)
     compile_kernels(models, schemes, np.unique(np.logical_or.reduce(options)).tolist())
 

@@ -125,18 +125,18 @@ TASKS: dict[str, Task] = {}
 
 def register(name: str, function: Function | Callable[..., Any]) -> str:
     """Return the key of a function. Raises ValueError with the reason where it cannot be used."""
-    given = function if isinstance(function, Function) else Function(function)
-    if not callable(given.call):
+    function = function if isinstance(function, Function) else Function(function)
+    if not callable(function.call):
         raise ValueError(
-            f"is of type {type(given.call).__name__}: expected a function, or il.Function"
+            f"is of type {type(function.call).__name__}: expected a function, or il.Function"
         )
-    version = given.version or fingerprint(given.call)
+    version = function.version or fingerprint(function.call)
     try:
-        cloudpickle.dumps(given.call)
+        cloudpickle.dumps(function.call)
     except Exception as error:  # whatever its content raises
         raise ValueError(f"cannot be sent to workers ({error})") from None
-    digest = sha256(f"{version} {given.units}".encode()).hexdigest()[:16]
-    KNOWN[f"{name}@{digest}"] = given
+    digest = sha256(f"{version} {function.units}".encode()).hexdigest()[:16]
+    KNOWN[f"{name}@{digest}"] = function
     return f"{name}@{digest}"
 
 
@@ -155,8 +155,8 @@ def solver_name(study: AnyStudy) -> str:
     else:
         functions = {name: KNOWN[key] for name, key in study.python.items()}
         task = Task(functions, study.store.samples)
-    told = f"{keys} {task.samples} {task.parameters} {task.responses}"
-    name = f"own {sha256(told.encode()).hexdigest()}"
+    form = f"{keys} {task.samples} {task.parameters} {task.responses}"
+    name = f"own {sha256(form.encode()).hexdigest()}"
     TASKS[name] = task
     return name
 
@@ -242,10 +242,13 @@ def _labelled_responses(task: Task, design: xr.Dataset, answers: Mapping[str, An
 
 
 def _points(task: Task, design: xr.Dataset, runs: Array) -> Array:
-    words = {name: np.atleast_1d(design[name].attrs.get("values", [])) for name in task.parameters}
+    choices = {
+        name: np.atleast_1d(design[name].attrs.get("values", [])) for name in task.parameters
+    }
     # as wide as the longest word of the study, so that equal cases have equal bytes in any batch
     kinds = [
-        (name, np.asarray(each, str).dtype if each.size else "f8") for name, each in words.items()
+        (name, np.asarray(words, str).dtype if words.size else "f8")
+        for name, words in choices.items()
     ]
     table = np.zeros(runs.size, kinds)
     for name in task.parameters:
@@ -256,17 +259,19 @@ def _points(task: Task, design: xr.Dataset, runs: Array) -> Array:
 def _model(task: Task, cases: Array, output: OutputSpec) -> Columns:
     """Return the answers of the model, one row per case: a number, or a mapping of numbers."""
     columns: Columns = {name: np.empty(cases.size) for name in task.responses}
-    for at, case in enumerate(cases):
+    for row, case in enumerate(cases):
         values = {name: case[name].item() for name in task.parameters}
-        found = _number(task.functions[""], "function", **values)
-        if not isinstance(found, Mapping):
-            found = {task.responses[0]: found}
-        if set(found) != set(task.responses):
-            given, wanted = ", ".join(map(str, found)), ", ".join(task.responses)
-            raise ValueError(f"function: gave {given}, but `responses` of the study are {wanted}")
+        answer = _number(task.functions[""], "function", **values)
+        if not isinstance(answer, Mapping):
+            answer = {task.responses[0]: answer}
+        if set(answer) != set(task.responses):
+            names, responses = ", ".join(map(str, answer)), ", ".join(task.responses)
+            raise ValueError(
+                f"function: gave {names}, but `responses` of the study are {responses}"
+            )
         for name in task.responses:
-            columns[name][at] = np.float64(_real(found[name], f"function: {name}"))
-            task.functions[""].check_unit(name, found[name])
+            columns[name][row] = np.float64(_real(answer[name], f"function: {name}"))
+            task.functions[""].check_unit(name, answer[name])
     return columns | {"status": np.zeros(cases.size, dtype=np.int32)}
 
 
