@@ -43,8 +43,8 @@ _SETTINGS = {
 class Engine:
     """The place where batches are solved.
 
-    That is a client that is there already where one is given, a running dask scheduler where an address is,
-    Slurm jobs where a profile is, else threads or processes of this machine. Schedulers and
+    That is a client that runs already where one is given, a running dask scheduler where an address
+    is, Slurm jobs where a profile is, else threads or processes of this machine. Schedulers and
     dashboards that are started here listen on the loopback alone, except the scheduler of Slurm
     jobs, which listens on the profile's interface. dask's own configuration applies, TLS included.
     """
