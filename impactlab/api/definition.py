@@ -28,7 +28,7 @@ class Study(StudyFolder):
     The arguments are the keys of a study file (docs/studies.md), and are read by the same reader:
     `Study(...)`, `Study.from_yaml(...)` and the command line run the same code on the same text.
     Runs, analysis, figures and report go to `folder`, and are found there again by whoever runs the
-    same study: Python or the command line.
+    same study: Python or the command line. The attributes `title` and `name` keep these arguments.
 
     Parameters
     ----------
@@ -68,10 +68,6 @@ class Study(StudyFolder):
 
     Attributes
     ----------
-    name : str
-        Name of the study, and of its folder: letters, digits, _ and -.
-    title : str
-        Title, one line, which heads the report.
     folder : pathlib.Path
         Folder of the results: `results`/`name`.
     declared : object
