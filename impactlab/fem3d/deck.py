@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from impactlab.fem3d.solver.dataset import IMPACT_PARAMETERS
 from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.fem3d.solver.mesh import (
     BEAM,
@@ -22,7 +23,6 @@ from impactlab.fem3d.solver.mesh import (
     check_mesh,
     sphere_density,
 )
-from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
 from impactlab.fem3d.solver.system import refuse_rate
 from impactlab.model.checks import instance, one_of, positive
 from impactlab.model.discretisation import Discretisation

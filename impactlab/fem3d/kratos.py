@@ -17,10 +17,10 @@ import xarray as xr
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from impactlab.fem3d.solver import Mesh, PatchTooSmallError
+from impactlab.fem3d.solver.dataset import OWN, histories, named
+from impactlab.fem3d.solver.evaluation import history_responses, plastic_responses
 from impactlab.fem3d.solver.march import History, Moment, Progress
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, check_mesh, nodal_masses, sphere_density
-from impactlab.fem3d.solver.responses import history_responses, plastic_responses
-from impactlab.fem3d.solver.solve import OWN, histories, named
 from impactlab.fem3d.solver.system import refuse_rate
 from impactlab.model.checks import integer, positive
 from impactlab.model.impact import Impact, Material

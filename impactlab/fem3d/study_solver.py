@@ -22,9 +22,9 @@ from impactlab.fem3d.plan import MOST_TIME, cost_of
 from impactlab.fem3d.solver import Cost, quarter_mesh
 from impactlab.fem3d.solver import solve as solve_alone
 from impactlab.fem3d.solver.compiler import COMPILER
+from impactlab.fem3d.solver.dataset import IMPACT_PARAMETERS
 from impactlab.fem3d.solver.estimates import contact_radius
-from impactlab.fem3d.solver.responses import plastic_reach
-from impactlab.fem3d.solver.solve import IMPACT_PARAMETERS
+from impactlab.fem3d.solver.evaluation import plastic_reach
 from impactlab.fem3d.wing import SIZES, SOLID, VARIABLES
 from impactlab.methods.runs import listed
 from impactlab.model import cost

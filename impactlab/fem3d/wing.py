@@ -56,7 +56,7 @@ MODEL = BeamModel(
         "costs": "impactlab.fem3d.study_solver",
         "figures": "impactlab.fem3d.figures.witness:FIGURES",
         "sections": "impactlab.fem3d.report:sections",
-        "compile": "impactlab.fem3d.solver.solve:compile_all",
+        "compile": "impactlab.fem3d.solver.dataset:compile_all",
     },
 )
 SIZES = tuple(size.name for size in MODEL.sizes)

@@ -15,7 +15,7 @@ from impactlab.figures import labels, responses_grid, scales, style
 from impactlab.figures.labels import Display, display
 from impactlab.figures.panel import name_places
 from impactlab.types import Floats
-from impactlab.verification.finding import Curve, Outcome, Panel
+from impactlab.verification.finding import Curve, CurvePanel, Outcome
 
 _ROW = 8.0  # height of a check's row, mm
 _LEAST, _MOST = 1e-6, 1e3  # limits of the ratios; those beyond are drawn at the edge
@@ -121,7 +121,7 @@ def plot_curves(outcome: Outcome) -> Figure:
     return figure
 
 
-def _looks(panel: Panel) -> dict[str, dict[str, Any]]:
+def _looks(panel: CurvePanel) -> dict[str, dict[str, Any]]:
     """Return the looks by label: the solver's coloured, then independent ones black and broken."""
     ours, independent = (
         dict.fromkeys(_label(c, panel.curves) for c in panel.curves if c.independent == kind)
@@ -158,7 +158,7 @@ def _label(curve: Curve, curves: Sequence[Curve]) -> str:
     return f"{curve.label}, independent" if curve.independent and same else curve.label
 
 
-def _draw_panel(ax: Axes, panel: Panel, looks: dict[str, dict[str, Any]]) -> None:
+def _draw_panel(ax: Axes, panel: CurvePanel, looks: dict[str, dict[str, Any]]) -> None:
     across, up = _unit(panel, "x"), _unit(panel, "y")
     ax.set_title(fill(labels.sentence(panel.title), width=_TITLE), loc="left")
     label = fill(labels.axis(panel.y[0], up.symbol), width=_LABEL)
@@ -187,7 +187,7 @@ def _points(curve: Curve, curves: Sequence[Curve]) -> dict[str, Any]:
     return {"linestyle": ""} if any(np.size(other.x) > _FEW for other in curves) else {}
 
 
-def _unit(panel: Panel, axis: str) -> Display:
+def _unit(panel: CurvePanel, axis: str) -> Display:
     """Return the display unit of an axis, by all that is drawn along it."""
     name, units = getattr(panel, axis)
     values: Floats = np.concatenate(

@@ -11,7 +11,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, paper_impact
 from impactlab.simulate import run_dataset
 from impactlab.verification.cases import elastic, slimmer
-from impactlab.verification.finding import Comparisons, Curve, Finding, Panel, check, rms_error
+from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, check, rms_error
 from impactlab.verification.solutions import infinite_beam as closed
 from impactlab.verification.solutions import modal
 
@@ -58,13 +58,13 @@ def infinite_beam() -> Finding:
         Curve("second order", nodes, slope, independent=True),
     ]
     axes = ("nodes", "1"), ("error (root mean square over the largest value)", "1")
-    fall = Panel("deflection history", *axes, curves, log=True)
+    fall = CurvePanel("deflection history", *axes, curves, log=True)
     return Finding([*convolved, *order, *impulsive], [*panels, fall])
 
 
 def _against_closed_forms(
     run: xr.Dataset, beam: Beam
-) -> tuple[Comparisons, Comparisons, list[Panel]]:
+) -> tuple[Comparisons, Comparisons, list[CurvePanel]]:
     """Compare a run under the force itself, and under one impulse at the force's centroid.
 
     Histories are those at mid-span. The shape is that near mid-span at the end: under the force,
@@ -107,8 +107,8 @@ def _against_closed_forms(
     shapes = [Curve(f"{FINEST} nodes", x, profile), Curve("force convolved", x, shape, True)]
     axes = ("distance from mid-span", "m"), ("deflection", "m")
     panels = [
-        Panel("deflection where the sphere strikes", _TIME, _DEFLECTION, histories),
-        Panel(f"shape {end}", *axes, shapes),
+        CurvePanel("deflection where the sphere strikes", _TIME, _DEFLECTION, histories),
+        CurvePanel(f"shape {end}", *axes, shapes),
     ]
     return convolved, impulsive, panels
 
@@ -158,7 +158,7 @@ def slender_limit() -> Finding:
     force = "change of the contact force"
     axes = ("depth over span", "1"), ("change (root mean square over the largest value)", "1")
     panels = [
-        Panel(title, _TIME, (force, "N"), histories["contact_force"]),
-        Panel("change with shear and rotary inertia", *axes, fall, log=True),
+        CurvePanel(title, _TIME, (force, "N"), histories["contact_force"]),
+        CurvePanel("change with shear and rotary inertia", *axes, fall, log=True),
     ]
     return Finding([*changes, *orders], panels)

@@ -8,15 +8,15 @@ from impactlab.verification import (
     local_contact,
     modal_series,
     plasticity,
+    rate_dependence,
     schemes,
-    strain_rate,
     symmetry,
     waveless,
 )
 from impactlab.verification.finding import Check
 
 _CONTACT = waveless, local_contact
-_BEAM = modal_series, beam_limits, plasticity, strain_rate
+_BEAM = modal_series, beam_limits, plasticity, rate_dependence
 _WHOLE = schemes, symmetry, energy
 CATALOGUE: dict[str, Check] = {
     entry.name: entry

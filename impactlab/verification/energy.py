@@ -17,7 +17,7 @@ from impactlab.solver import RULES
 from impactlab.types import Floats
 from impactlab.variables import WARNINGS
 from impactlab.verification.cases import discretised
-from impactlab.verification.finding import Comparisons, Curve, Finding, Panel, check
+from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, check
 from impactlab.verification.solutions import quadrature
 from impactlab.verification.solutions.beam_modes import modes_left_out, modes_on_nodes
 from impactlab.verification.solutions.contact_laws import LAWS
@@ -166,7 +166,7 @@ def balances() -> Finding:
             curves.append(Curve(f"{scheme}: {label}", rank, sizes))
         every += audits
     axes = ("cases, the best first", "1"), ("share of what is brought", "1")
-    excess = Panel("In excess at the end, case by case", *axes, curves, log=True)
+    excess = CurvePanel("In excess at the end, case by case", *axes, curves, log=True)
     _compare_created(comparisons, every)
     return Finding(comparisons, [excess, _loop_panel(every)])
 
@@ -242,7 +242,7 @@ def _compare_created(comparisons: Comparisons, audits: list[Audit]) -> None:
     comparisons.at("runs marked wrongly").absolute(label, "1", wrong, 0.0, 0.0)
 
 
-def _loop_panel(audits: list[Audit]) -> Panel:
+def _loop_panel(audits: list[Audit]) -> CurvePanel:
     """Draw the dissipation over the work of loading, where the law creates energy and beyond."""
     points = []
     for case in audits:
@@ -260,4 +260,4 @@ def _loop_panel(audits: list[Audit]) -> Panel:
     ]
     title = "Stronge's law creates energy below 2.673 times the yield indentation"
     x_axis = ("largest indentation over that of first yield", "1")
-    return Panel(title, x_axis, ("contact dissipation over the work of loading", "1"), curves)
+    return CurvePanel(title, x_axis, ("contact dissipation over the work of loading", "1"), curves)

@@ -138,7 +138,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Panel:
+class CurvePanel:
     """Axes with their curves. x, y: (name, units); log: logarithmic axes, for errors."""
 
     title: str
@@ -153,7 +153,7 @@ class Finding:
     """All that one check found."""
 
     comparisons: Sequence[Comparison]
-    panels: Sequence[Panel] = field(default_factory=tuple)
+    panels: Sequence[CurvePanel] = field(default_factory=tuple)
 
     @property
     def passed(self) -> bool:

@@ -18,7 +18,7 @@ from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import run_dataset
 from impactlab.types import Floats
 from impactlab.verification.cases import elastic
-from impactlab.verification.finding import Comparisons, Curve, Finding, Panel, check
+from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, check
 from impactlab.verification.solutions import beam_modes, hertz
 from impactlab.verification.solutions.contact_laws import LAWS
 from impactlab.verification.solutions.modal import ModalSolution, solve_with
@@ -95,7 +95,7 @@ def _compared(option: str, depth: float, nodes: int, other: tuple[str, str]) -> 
             Curve("modal series", time, histories["contact_force"], independent=True),
             Curve(f"modal series, {other[1]}", time, beside.at("contact_force", time), True),
         ]
-        panels.append(Panel(comparisons.where, ("time", "s"), ("contact force", "N"), curves))
+        panels.append(CurvePanel(comparisons.where, ("time", "s"), ("contact force", "N"), curves))
     return Finding(comparisons, panels)
 
 
@@ -153,7 +153,7 @@ def contact_prestress() -> Finding:
         Curve("law along its histories", time, expected, independent=True),
         Curve("stress ignored", time, plain.contact_force.values),
     ]
-    return Finding(table, [Panel(table.where, ("time", "s"), ("contact force", "N"), curves)])
+    return Finding(table, [CurvePanel(table.where, ("time", "s"), ("contact force", "N"), curves)])
 
 
 def _prestressed(impact: Impact, run: xr.Dataset) -> Floats:
@@ -207,7 +207,7 @@ def contact_patch() -> Finding:
     Energy: the solver's own audit.
     """
     comparisons = Comparisons()
-    panels: list[Panel] = []
+    panels: list[CurvePanel] = []
     for (model, scheme, compliance), (nodes, chords) in GRIDS.items():
         impact = replace(elastic(paper_impact(VELOCITY)), beam_model=model, load="contact_patch")
         impact = replace(impact, contact_compliance=compliance)
@@ -238,7 +238,7 @@ def contact_patch() -> Finding:
                 Curve("point load", time, point.midspan_curvature.values),
                 Curve("modes under Hertz's pressure", time, bent, independent=True),
             ]
-            panels = [Panel(where, ("time", "s"), ("mid-span curvature", "m-1"), lines)]
+            panels = [CurvePanel(where, ("time", "s"), ("mid-span curvature", "m-1"), lines)]
     return Finding(comparisons, panels)
 
 

@@ -18,8 +18,8 @@ from impactlab.verification.cases import Sweep, aluminium_impact, elastic, timos
 from impactlab.verification.finding import (
     Comparisons,
     Curve,
+    CurvePanel,
     Finding,
-    Panel,
     check,
     rms_error,
 )
@@ -83,7 +83,7 @@ def _finding(
     The panels show the paper's beam at 0.99 m/s; rivals: more curves in them.
     """
     comparisons = Comparisons()
-    panels: list[Panel] = []
+    panels: list[CurvePanel] = []
     for beam, case in cases.items():
         table = []
         for velocity in case.velocities:
@@ -149,7 +149,7 @@ def _panels(
     schemes: Sequence[GridFamily],
     runs: Mapping[GridKey, xr.Dataset],
     solutions: Mapping[str, ModalSolution],
-) -> list[Panel]:
+) -> list[CurvePanel]:
     """Draw the histories, and how their errors fall."""
     panels, errors, series = [], [], next(iter(solutions.values()))
     for name, (quantity, units) in HISTORIES.items():
@@ -163,11 +163,11 @@ def _panels(
             errors.append(Curve(f"{grids.scheme}: {quantity}", nodes, np.array(sizes)))
         for label, other in solutions.items():
             curves.append(Curve(label, time, other.at(name, time), independent=True))
-        panels.append(Panel(title, ("time", "s"), (quantity, units), curves))
+        panels.append(CurvePanel(title, ("time", "s"), (quantity, units), curves))
     first = errors[0]
     slope = Curve("second order", first.x, first.y[0] * (first.x[0] / first.x) ** 2.0, True)
     axes = ("nodes", "1"), ("error (root mean square over the largest value)", "1")
-    return [*panels, Panel(title, *axes, [*errors, slope], log=True)]
+    return [*panels, CurvePanel(title, *axes, [*errors, slope], log=True)]
 
 
 BERNOULLI_CASES = {
@@ -237,7 +237,7 @@ def sub_impacts() -> Finding:
     sphere, beam = replace(small.sphere, radius=0.02), replace(small.beam, span=0.307)
     large = replace(small, sphere=sphere, beam=beam)
     comparisons = Comparisons()
-    panels: list[Panel] = []
+    panels: list[CurvePanel] = []
     for where, impact, duration in (
         ("sphere of 10 mm radius, span of 153.5 mm", small, 1e-3),
         ("sphere of 20 mm radius, span of 307 mm", large, 6e-3),
@@ -251,7 +251,7 @@ def sub_impacts() -> Finding:
             Curve(f"{grid.nodes} nodes", time, run.contact_force.values),
             Curve("modal series", time, series.at("contact_force", time), independent=True),
         ]
-        panels.append(Panel(where, ("time", "s"), ("contact force", "N"), curves))
+        panels.append(CurvePanel(where, ("time", "s"), ("contact force", "N"), curves))
     return Finding(comparisons, panels)
 
 

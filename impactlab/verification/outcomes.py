@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.verification.finding import Comparison, Curve, Finding, Outcome, Panel
+from impactlab.verification.finding import Comparison, Curve, CurvePanel, Finding, Outcome
 
 Kinds = dict[str, tuple[type, str]]
 _CHECKS: Kinds = {
@@ -111,7 +111,7 @@ def unpacked(dataset: xr.Dataset) -> list[Outcome]:
         finding = Finding(
             [Comparison(*values) for _, *values, _ in compared],
             [
-                Panel(heading, (x, x_units), (y, y_units), lines[panel], log)
+                CurvePanel(heading, (x, x_units), (y, y_units), lines[panel], log)
                 for panel, (check, heading, x, x_units, y, y_units, log) in panels
                 if check == name
             ],

@@ -14,7 +14,7 @@ from impactlab.simulate import case_table, fibre_section, run_dataset
 from impactlab.solver import RULES, section
 from impactlab.types import Floats
 from impactlab.verification.cases import with_beam_material
-from impactlab.verification.finding import Comparisons, Curve, Finding, Panel, check
+from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, check
 from impactlab.verification.solutions import beam_modes, bending, collapse, fibre_beam, quadrature
 
 _HARDENING = {
@@ -57,7 +57,7 @@ def moment_curvature() -> Finding:
         curves.append(Curve(name, kappa, fine))
         curves.append(Curve(f"{name}, exact", kappa, exact, independent=True))
     axes = ("curvature", "m-1"), ("bending moment", "N m")
-    return Finding(comparisons, [Panel("Bent to and fro", *axes, curves)])
+    return Finding(comparisons, [CurvePanel("Bent to and fro", *axes, curves)])
 
 
 def _moments(beam: Beam, rule: str, points: int, curvatures: Floats) -> Floats:
@@ -100,7 +100,7 @@ def static_deflection() -> Finding:
     beam = paper_impact().beam
     impact = _slow_impact(beam, mass=8e4, velocity=0.02, softness=50e-3)
     comparisons = Comparisons()
-    panels: list[Panel] = []
+    panels: list[CurvePanel] = []
     for rule, points in (("lobatto", 9), ("lobatto", 2), ("layers", 5)):
         run = run_dataset(impact, Discretisation(nodes=101, points=points, rule=rule), duration=1.2)
         positions, weights = quadrature.rule(rule, points)
@@ -113,7 +113,7 @@ def static_deflection() -> Finding:
             Curve("solver", run.time.values, run.midspan_deflection.values),
             Curve("F L³/(48 EI)", run.time.values, expected, independent=True),
         ]
-        panels.append(Panel(where, ("time", "s"), ("deflection at mid-span", "m"), curves))
+        panels.append(CurvePanel(where, ("time", "s"), ("deflection at mid-span", "m"), curves))
 
     beam = replace(beam, span=0.25 * beam.span)
     impact = _slow_impact(beam, mass=8e4, velocity=0.24, softness=50e-3)
@@ -192,7 +192,7 @@ def static_collapse() -> Finding:
     comparisons.at("40 layers; largest deflection less P_c L^3/(48 EI)")
     comparisons.relative("permanent deflection", "m", permanent, left, 1e-3)
     axes = ("deflection at mid-span", "m"), ("load at mid-span", "N")
-    return Finding(comparisons, [Panel("Loading to collapse, and back", *axes, curves)])
+    return Finding(comparisons, [CurvePanel("Loading to collapse, and back", *axes, curves)])
 
 
 def _run_collapse(beam: Beam, rule: str, points: int) -> xr.Dataset:
@@ -259,7 +259,7 @@ def rigid_plastic_mode() -> Finding:
     x = ("kinetic energy over the beam's elastic capacity", "1")
     y = ("shortfall of the permanent deflection from the mode's", "1")
     title = "The rest is elastic: it falls with the energy ratio"
-    return Finding(comparisons, [Panel(title, x, y, curves, log=True)])
+    return Finding(comparisons, [CurvePanel(title, x, y, curves, log=True)])
 
 
 def _struck(mass_ratio: float, energy_ratio: float) -> tuple[Impact, xr.Dataset]:
@@ -307,7 +307,7 @@ elements and steps."""
 def fibre_elements() -> Finding:
     """Compare both schemes with an implicit solution of sphere, contact, beam and fibres."""
     comparisons = Comparisons()
-    panels: list[Panel] = []
+    panels: list[CurvePanel] = []
     for name, impact in STRUCK.items():
         exact = fibre_beam.solve(impact, STRUCK_DURATION, elements=ELEMENTS, steps=STEPS)
         curves = []
@@ -320,5 +320,5 @@ def fibre_elements() -> Finding:
                 compare(run, {variable: getattr(exact, variable)}, tolerance)
             curves.append(Curve(f"{scheme}, {nodes} nodes", exact.time, run.contact_force.values))
         curves.append(Curve("fibre elements", exact.time, exact.contact_force, independent=True))
-        panels.append(Panel(name, ("time", "s"), ("contact force", "N"), curves))
+        panels.append(CurvePanel(name, ("time", "s"), ("contact force", "N"), curves))
     return Finding(comparisons, panels)

@@ -21,8 +21,8 @@ from impactlab.verification.cases import discretised, elastic, with_beam_materia
 from impactlab.verification.finding import (
     Comparisons,
     Curve,
+    CurvePanel,
     Finding,
-    Panel,
     check,
     rms_error,
     worst,
@@ -124,7 +124,7 @@ _SHORTER = {"leapfrog": 1.0, "modal": 8.0}
 def observed_order() -> Finding:
     """Compare the orders in which the differences between successive runs fall with theory."""
     comparisons = Comparisons()
-    panels: list[Panel] = []
+    panels: list[CurvePanel] = []
     for (name, case), scheme in product(CASES_IN_TIME.items(), SCHEMES):
         # Successively shorter steps, sampled at the longest ones.
         where, nodes = f"{scheme}, time alone: {name}", NODES_IN_TIME[scheme]
@@ -179,12 +179,13 @@ def _order_panel(
     x: str,
     values: Sequence[int],
     order: float,
-) -> Panel:
+) -> CurvePanel:
     fineness = np.array(values[:-1], dtype=np.float64)
     curves = [Curve(name, fineness, _apart(name, runs)) for name in case.answers]
     slope, label = curves[0].y[0] * (fineness[0] / fineness) ** order, f"order {order:g}"
     curves.append(Curve(label, fineness, slope, independent=True))
-    return Panel(title, (x, "1"), ("difference from the next finer run", "1"), curves, log=True)
+    axes = (x, "1"), ("difference from the next finer run", "1")
+    return CurvePanel(title, *axes, curves, log=True)
 
 
 FINE = 1601

@@ -26,8 +26,8 @@ from impactlab.verification.finding import (
     Comparison,
     Comparisons,
     Curve,
+    CurvePanel,
     Finding,
-    Panel,
     check,
     worst,
 )
@@ -101,7 +101,7 @@ def similarity() -> Finding:
     break it.
     """
     comparisons = Comparisons()
-    panels: list[Panel] = []
+    panels: list[CurvePanel] = []
     for scheme, grid in _SCALED_GRIDS.items():
         curves = []
         for contact in LAWS if scheme == "leapfrog" else ("stronge",):
@@ -116,7 +116,7 @@ def similarity() -> Finding:
                     newtons = scaled.contact_force.values / scale.factor("N")
                     curves.append(Curve(name, time, newtons, scale is UNSCALED))
         axes = ("time", "s"), ("contact force", "N")
-        panels.append(Panel(f"{scheme}, scaled back", *axes, curves))
+        panels.append(CurvePanel(f"{scheme}, scaled back", *axes, curves))
     return Finding(comparisons, panels)
 
 
@@ -274,4 +274,4 @@ def time_reversal() -> Finding:
             Curve(f"{grid.scheme}: back, in reverse", time[1:], back, independent=True),
         ]
     axes = ("time since first touch", "s"), ("contact force", "N")
-    return Finding(comparisons, [Panel("the paper's case, elastic", *axes, curves)])
+    return Finding(comparisons, [CurvePanel("the paper's case, elastic", *axes, curves)])

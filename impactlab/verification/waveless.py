@@ -14,7 +14,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import run_dataset
 from impactlab.verification.cases import Sweep, elastic, rigid_backed
-from impactlab.verification.finding import Comparisons, Curve, Finding, Panel, check
+from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, check
 from impactlab.verification.solutions import hertz, lumped, modal
 from impactlab.verification.solutions.contact_laws import LAWS, LawOnHalfSpace, law_on_half_space
 from impactlab.verification.solutions.hunt_crossley import HuntCrossleyImpact
@@ -113,9 +113,9 @@ def contact_laws() -> Finding:
     axes = ("indentation", "m"), ("contact force", "N")
     dent = ("permanent indentation", "m")
     panels = [
-        Panel(f"force against indentation at {DRAWN} m/s", *axes, forces),
-        Panel("restitution against velocity", _VELOCITY, _RESTITUTION, restitutions, log=True),
-        Panel("permanent indentation against velocity", _VELOCITY, dent, dents, log=True),
+        CurvePanel(f"force against indentation at {DRAWN} m/s", *axes, forces),
+        CurvePanel("restitution against velocity", _VELOCITY, _RESTITUTION, restitutions, log=True),
+        CurvePanel("permanent indentation against velocity", _VELOCITY, dent, dents, log=True),
     ]
     return Finding(comparisons, panels)
 
@@ -159,7 +159,7 @@ def viscous_contact() -> Finding:
         Curve("hunt_crossley", np.array(VELOCITIES), np.array(restitutions)),
         Curve("first integral", speeds, expected_curve, independent=True),
     ]
-    panel = Panel("restitution against velocity", _VELOCITY, _RESTITUTION, curves, log=True)
+    panel = CurvePanel("restitution against velocity", _VELOCITY, _RESTITUTION, curves, log=True)
     return Finding(comparisons, [panel])
 
 
@@ -211,7 +211,7 @@ def spring_mass() -> Finding:
         # whose mass resists only gradually
         Curve("elastic beam, modal series", time, series.at("contact_force", time), True),
     ]
-    return Finding(comparisons, [Panel(where, *_FORCE_AXES, curves)])
+    return Finding(comparisons, [CurvePanel(where, *_FORCE_AXES, curves)])
 
 
 def _run_spring_mass(impact: Impact, duration: float, courant: float = 0.5) -> xr.Dataset:
@@ -280,7 +280,7 @@ def rigid_beam() -> Finding:
     ]
     title = "the paper's sphere on a rigid beam, 0.02 m/s"
     comparisons = Comparisons().worst(hertzian).worst(plastic)
-    return Finding([*comparisons, *slow], [Panel(title, *_FORCE_AXES, curves)])
+    return Finding([*comparisons, *slow], [CurvePanel(title, *_FORCE_AXES, curves)])
 
 
 def _run_rigid_beam(impact: Impact, samples: int = 2, courant: float = 0.9) -> xr.Dataset:

@@ -20,7 +20,14 @@ from made_runs import (
 from impactlab.solver.contact import LAWS
 from impactlab.solver.outputs import OUTSIDE_CONTACT_LAW
 from impactlab.variables import RESPONSES, described
-from impactlab.verification.finding import Comparison, Comparisons, Curve, Finding, Outcome, Panel
+from impactlab.verification.finding import (
+    Comparison,
+    Comparisons,
+    Curve,
+    CurvePanel,
+    Finding,
+    Outcome,
+)
 from impactlab.verification.outcomes import packed
 
 
@@ -181,13 +188,13 @@ def outcomes():
     time, nodes = np.linspace(0.0, 1e-3, 40), np.array([51.0, 101.0, 201.0])
     force = 2e4 * np.sin(3e3 * time)
     panels = [
-        Panel(
+        CurvePanel(
             "force at 1 m/s",
             ("time", "s"),
             ("contact force", "N"),
             [Curve("201 nodes", time, force), Curve("series", time, 1.01 * force, True)],
         ),
-        Panel(
+        CurvePanel(
             "error",
             ("nodes", "1"),
             ("error of the contact force over its largest value", "1"),

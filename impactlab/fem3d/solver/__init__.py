@@ -7,12 +7,12 @@ strains are rates of the current shape, stresses turn with the material (Jaumann
 matched faces to stay above each other, which holds while they slide by less than an element.
 """
 
+from impactlab.fem3d.solver.dataset import solve as solve
+from impactlab.fem3d.solver.dataset import solve_on as solve_on
 from impactlab.fem3d.solver.estimates import Cost as Cost
 from impactlab.fem3d.solver.estimates import estimate as estimate
 from impactlab.fem3d.solver.estimates import least_cost as least_cost
 from impactlab.fem3d.solver.march import PatchTooSmallError as PatchTooSmallError
 from impactlab.fem3d.solver.mesh import Mesh as Mesh
 from impactlab.fem3d.solver.mesh import quarter_mesh as quarter_mesh
-from impactlab.fem3d.solver.solve import solve as solve
-from impactlab.fem3d.solver.solve import solve_on as solve_on
 from impactlab.fem3d.solver.system import MOST_THREADS as MOST_THREADS

@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from impactlab.figures import data, style
 from impactlab.figures import findings as drawn
 from impactlab.figures.draw import draw_findings
-from impactlab.verification.finding import Curve, Finding, Panel, gravest_first
+from impactlab.verification.finding import Curve, CurvePanel, Finding, gravest_first
 from impactlab.verification.outcomes import packed
 
 MANY = [Curve(f"{n} nodes", np.arange(9.0), n + np.arange(9.0), n % 2 == 1) for n in range(9)]
@@ -35,7 +35,7 @@ def test_files_are_the_overview_and_each_check_with_curves(findings, outcomes, t
     captions = json.loads((tmp_path / "captions.json").read_text("utf-8"))
     assert captions["bad"]["title"] == "A bad check"
     assert "a series & more" in captions["bad"]["caption"]
-    empty = _with_panels(outcomes, Panel("t", ("x", "m"), ("y", "m"), []))
+    empty = _with_panels(outcomes, CurvePanel("t", ("x", "m"), ("y", "m"), []))
     draw_findings(packed([outcomes[0], empty]), tmp_path)
     assert not list(tmp_path.glob("bad.*"))
 
@@ -126,19 +126,21 @@ def test_ours_and_independent_curves_differ_without_colour(outcomes):
 def test_few_points_beside_a_dense_curve_are_not_joined(outcomes):
     x, dense = np.arange(5.0), np.linspace(0.0, 4.0, 99)
     curves = [Curve("solver", x, x**2), Curve("closed form", dense, dense**2, True)]
-    panel = Panel("t", ("x", "m"), ("y", "m"), curves)
+    panel = CurvePanel("t", ("x", "m"), ("y", "m"), curves)
     (axes,) = drawn.plot_curves(_with_panels(outcomes, panel)).axes
     assert [line.get_linestyle() for line in axes.lines] == ["None", "--"]
     assert [line.get_marker() for line in axes.lines] == ["o", ""]
     # a curve named as the solvers is told apart
     x = np.arange(3.0)
-    panel = Panel("t", ("x", "m"), ("y", "m"), [Curve("steel", x, x), Curve("steel", x, x, True)])
+    panel = CurvePanel(
+        "t", ("x", "m"), ("y", "m"), [Curve("steel", x, x), Curve("steel", x, x, True)]
+    )
     (axes,) = drawn.plot_curves(_with_panels(outcomes, panel)).axes
     assert [line.get_label() for line in axes.lines] == ["steel", "steel, independent"]
     # nothing to draw is said
     x = np.arange(3.0)
-    below = Panel("t", ("x", "m"), ("y", "m"), [Curve("a", x, -1.0 - x)], log=True)
-    missing = Panel("t", ("x", "m"), ("y", "m"), [Curve("a", x, x * np.nan)])
+    below = CurvePanel("t", ("x", "m"), ("y", "m"), [Curve("a", x, -1.0 - x)], log=True)
+    missing = CurvePanel("t", ("x", "m"), ("y", "m"), [Curve("a", x, x * np.nan)])
     figure = _laid_out(drawn.plot_curves(_with_panels(outcomes, below, missing)))
     said = [axes.texts[0].get_text() for axes in figure.axes]
     assert said == ["no finite values above zero", "no finite values"]

@@ -8,8 +8,8 @@ import pytest
 
 from impactlab.fem3d import kratos
 from impactlab.fem3d.deck import FLAVOURS, write_deck
+from impactlab.fem3d.solver.dataset import solve_on
 from impactlab.fem3d.solver.mesh import SPHERE
-from impactlab.fem3d.solver.solve import solve_on
 
 both = pytest.mark.parametrize("flavour", FLAVOURS)
 

@@ -14,7 +14,7 @@ from impactlab.solver.section import bend_at_rate
 from impactlab.solver.strain_rate import CowperSymonds
 from impactlab.types import Floats
 from impactlab.verification.cases import with_beam_material
-from impactlab.verification.finding import Comparisons, Curve, Finding, Panel, check
+from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, check
 from impactlab.verification.solutions import hertz
 
 D, Q = 40.4, 5.0
@@ -50,7 +50,7 @@ def strain_rate() -> Finding:
         comparisons.relative(label, units, *values, tolerance)
     curves = [Curve("solver", _RATES, ours), Curve("closed form", _RATES, closed, independent=True)]
     axes = ("strain rate at the surface", "s-1"), ("moment", "N m")
-    return Finding(comparisons, [Panel("bent at a constant rate", *axes, curves, log=True)])
+    return Finding(comparisons, [CurvePanel("bent at a constant rate", *axes, curves, log=True)])
 
 
 def _moments(impact: Impact, rates: Floats) -> Floats:

@@ -6,7 +6,7 @@ import xarray as xr
 
 import impactlab as il
 from impactlab.fem3d.solver import quarter_mesh
-from impactlab.fem3d.solver.responses import contacts, peak, plastic_reach
+from impactlab.fem3d.solver.evaluation import contacts, peak, plastic_reach
 
 
 def test_start_and_end_between_steps_and_short_pauses_do_not_count():

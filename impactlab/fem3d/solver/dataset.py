@@ -10,9 +10,9 @@ import numpy as np
 import xarray as xr
 
 from impactlab.fem3d.solver.compiler import COMPILER
+from impactlab.fem3d.solver.evaluation import fields, plastic_responses, responses
 from impactlab.fem3d.solver.march import Energies, History, March, Progress
 from impactlab.fem3d.solver.mesh import Mesh, check_mesh, quarter_mesh
-from impactlab.fem3d.solver.responses import fields, plastic_responses, responses
 from impactlab.fem3d.solver.system import System, ThreadPool
 from impactlab.model.checks import integer, positive
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
