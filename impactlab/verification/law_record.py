@@ -33,11 +33,13 @@ _STEEP = 3.0
 def measured(name: str) -> ContactLaw:
     """Return the record of a law with its numbers measured.
 
-    yield_pressure stays as it is where the law still is Hertz's there: first yield may come before
-    its curve leaves Hertz's.
+    yield_pressure stays as it is where the law is Hertz's beyond 1.1 times it: first yield may come
+    before a curve leaves Hertz's.
     """
     law = CONTACT_LAWS[name]
-    pressure = min(law.yield_pressure, yield_pressure(name))
+    pressure = yield_pressure(name)
+    if pressure > 1.1 * law.yield_pressure:
+        pressure = law.yield_pressure
     unit = _indentation(pressure)
     jumps = _jumps(name)
     joints = np.array([1.0, *(delta / unit for delta, _ in jumps)])
