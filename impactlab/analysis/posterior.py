@@ -200,7 +200,7 @@ _VARIABLES: dict[tuple[str, ...], dict[str, str]] = {
         "parameter_units": "",
     },
     ("parameter", "other_parameter"): {
-        "posterior_correlation": "correlation of two parameters given the measurements",
+        "posterior_correlation": "correlation of two parameters given the measurements"
     },
     ("parameter", "mode"): {
         "mode_low": "lower end of the central 95 % of one mode of the parameter's posterior, SI",
@@ -229,21 +229,13 @@ _VARIABLES: dict[tuple[str, ...], dict[str, str]] = {
         "measured_conditions": "",
         "measured_source": "",
     },
-    ("draw", "parameter"): {
-        "draws": "draws from the posterior, of equal weight, SI",
-    },
-    ("draw",): {
-        "draw_model": "model of a draw",
-    },
+    ("draw", "parameter"): {"draws": "draws from the posterior, of equal weight, SI"},
+    ("draw",): {"draw_model": "model of a draw"},
     ("draw", "measurement"): {
-        "draw_predicted": "the surrogate's prediction of each measurement at a draw",
+        "draw_predicted": "the surrogate's prediction of each measurement at a draw"
     },
-    ("prior_draw", "parameter"): {
-        "prior_draws": "quantiles of the prior, SI",
-    },
-    (): {
-        "predictive_p": "posterior predictive p-value of chi-squared",
-    },
+    ("prior_draw", "parameter"): {"prior_draws": "quantiles of the prior, SI"},
+    (): {"predictive_p": "posterior predictive p-value of chi-squared"},
 }
 """Meaning by name, of the variables on these dimensions."""
 

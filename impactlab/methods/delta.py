@@ -48,9 +48,7 @@ _VARIABLES = {
         "and twice the width of the kernels",
     ),
     "delta_first_order": IndexVariable(
-        "first-order Sobol index from given data",
-        _2022,
-        comment="below zero by noise alone",
+        "first-order Sobol index from given data", _2022, comment="below zero by noise alone"
     ),
     "dummy_delta": IndexVariable.of_dummy("delta of a dummy", f"{_2013}, eqs. 26 and 30"),
     "dummy_delta_first_order": IndexVariable.of_dummy(

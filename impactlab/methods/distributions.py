@@ -368,11 +368,7 @@ DISTRIBUTIONS: Mapping[str, type[Distribution]] = {
     kind.name(): kind for kind in Distribution.__subclasses__()
 }
 """Distributions of numbers, by their names in study files."""
-ENTRIES: Mapping[str, type[Entry]] = {
-    **DISTRIBUTIONS,
-    CHOICE: Choice,
-    Fixed.name(): Fixed,
-}
+ENTRIES: Mapping[str, type[Entry]] = {**DISTRIBUTIONS, CHOICE: Choice, Fixed.name(): Fixed}
 
 
 def distribution_of(attributes: Mapping[str, Any]) -> Distribution:

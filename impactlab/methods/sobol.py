@@ -18,14 +18,7 @@ from pydantic import (
 )
 
 from impactlab.methods.estimators import half_width
-from impactlab.methods.record import (
-    BY_SAMPLES,
-    PAIR,
-    Family,
-    IndexVariable,
-    Indices,
-    Measure,
-)
+from impactlab.methods.record import BY_SAMPLES, PAIR, Family, IndexVariable, Indices, Measure
 from impactlab.methods.runs import Sample
 from impactlab.methods.saltelli import REPLICATES, Outputs, estimates, saltelli, step
 from impactlab.methods.sampling import MOST_RUNS, Grouped

@@ -52,11 +52,12 @@ def imputed(outputs: Floats, sample: Sample, response: str) -> Imputation:
     gaps = np.isnan(outputs)
     if not gaps.any() or sample.settings.get("failed_runs") != "impute":
         return Imputation(outputs)
-    over = f"words ({', '.join(sample.words)})" if sample.words else ""
-    if over := over or "correlated parameters" * bool(correlations(sample.runs)):
+    if sample.words or correlations(sample.runs):
+        words = f"words ({', '.join(sample.words)})"
         raise ValueError(
-            f"{sample.study}: no surrogate is fitted over {over}, so it cannot supply values: set "
-            "failed_runs: fail"
+            f"{sample.study}: no surrogate is fitted over "
+            f"{words if sample.words else 'correlated parameters'}, so it cannot supply values: "
+            "set failed_runs: fail"
         )
     parameters, number = len(sample.parameters), int(np.count_nonzero(~gaps))
     share = float(gaps.mean())

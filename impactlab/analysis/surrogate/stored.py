@@ -114,13 +114,11 @@ class Surrogate:
         for position, name in enumerate(self.responses):
             entry = self.dataset.sel(response=name)
             verdict = names(SurrogateVerdict)[int(entry["verdict"])]
-            if verdict == "usable" and (leverages[position] > float(entry["reach"])).any():
-                verdict = "extrapolated"
-            elif (
-                verdict == "usable"
-                and (errors[position] > IMPRECISE * np.abs(answers[position])).any()
-            ):
-                verdict = "imprecise"
+            if verdict == "usable":
+                if (leverages[position] > float(entry["reach"])).any():
+                    verdict = "extrapolated"
+                elif (errors[position] > IMPRECISE * np.abs(answers[position])).any():
+                    verdict = "imprecise"
             attrs = {
                 "long_name": str(entry["response_long_name"].item()),
                 "units": str(entry["response_units"].item()),
@@ -276,14 +274,8 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
     columns = [runs[str(name)] for name in dataset["parameter"].values]
     distributions = [distribution_of(column.attrs).arguments() for column in columns]
     pairs = list(zip(distributions, columns, strict=True))
-    lowest = [
-        distribution["low"] if "low" in distribution else float(column.min())
-        for distribution, column in pairs
-    ]
-    highest = [
-        distribution["high"] if "high" in distribution else float(column.max())
-        for distribution, column in pairs
-    ]
+    lowest = [entry.get("low", float(column.min())) for entry, column in pairs]
+    highest = [entry.get("high", float(column.max())) for entry, column in pairs]
     inputs = {
         "distribution": ([json.dumps(distribution) for distribution in distributions], {}),
         "parameter_units": ([column.attrs.get("units", "1") for column in columns], {}),
