@@ -95,6 +95,30 @@ def response(
     ('Impact velocity (m/s)', 'Contact duration (ms)', 2)
     """
     _require("response", name, [key for key in runs.data_vars if key not in ("status", "remarks")])
+    along, ax = runs[_across(runs, name, x, hue)], _current(ax)
+    if access.is_sample(runs):
+        values, label = responses_grid.shown(runs, name)
+        middles = labels.display(runs[name])(of_runs(runs, name))
+        samples.scatter_runs(ax, along, values.values, middles)
+        ax.set(xlabel=samples.axis_label(along), ylabel=label)
+        return ax
+    most = runs.sizes[hue] if hue else 1
+    selected = plan(runs, name, along=[str(along.name)], prefer=[hue] if hue else [], most=most)
+    analysis = xr.Dataset()
+    if measurements is not None:
+        analysis = compared(runs, analysis, read_measurements(measurements, runs))
+    label = grids.response_curves(ax, runs, analysis, name, along, selected)
+    if hue:
+        ax.legend(title=labels.sentence(labels.parameter(runs[hue])))
+    ax.set(xlabel=grids.parameter_axis(along), ylabel=label)
+    return ax
+
+
+def _across(runs: xr.Dataset, name: str, x: str | None, hue: str | None) -> str:
+    """Return the parameter of the axis. Raises ValueError for unknown names and further dimensions.
+
+    name: of the response. x, hue: as of `response`.
+    """
     dims = [dim for dim in access.design_dims(runs, runs[name].dims) if runs.sizes[dim] > 1]
     sample = access.is_sample(runs)
     numbers = [dim for dim in dims if runs[dim].dtype.kind in "if" and dim != hue]
@@ -111,24 +135,7 @@ def response(
     if further := [dim for dim in dims if dim not in (x, hue, "run")]:
         first = f"{further[0]}={runs[further[0]].values[0].item()!r}"
         raise ValueError(f"runs also differ in {', '.join(further)}: first runs.sel({first})")
-    ax = _current(ax)
-    along = runs[str(x)]
-    if sample:
-        values, label = responses_grid.shown(runs, name)
-        middles = labels.display(runs[name])(of_runs(runs, name))
-        samples.scatter_runs(ax, along, values.values, middles)
-    else:
-        most = runs.sizes[hue] if hue else 1
-        selected = plan(runs, name, along=[str(x)], prefer=[hue] if hue else [], most=most)
-        analysis = xr.Dataset()
-        if measurements is not None:
-            analysis = compared(runs, analysis, read_measurements(measurements, runs))
-        label = grids.response_curves(ax, runs, analysis, name, along, selected)
-        if hue:
-            ax.legend(title=labels.sentence(labels.parameter(runs[hue])))
-    across = samples.axis_label(along) if sample else grids.parameter_axis(along)
-    ax.set(xlabel=across, ylabel=label)
-    return ax
+    return str(x)
 
 
 def run(data: xr.Dataset) -> Any:

@@ -235,29 +235,16 @@ def measurements(analysis: xr.Dataset, name: str, along: str) -> xr.Dataset:
     stating = (quantity == name) & (verdict != Agreement.OTHER_IMPACT)
     compared = analysis[[key for key in analysis if str(key).startswith("compared_")]]
     compared = compared.isel(comparison=np.flatnonzero(stating.values))
-    stated = [
-        json.loads(text).get(along) for text in compared["compared_conditions"].values.tolist()
-    ]
-    numbers = [value if isinstance(value, int | float) else np.nan for value in stated]
-    keys = [
-        (
-            x,
-            *(
-                compared[f"compared_{key}"].values[position]
-                for key in ("measured", "uncertainty", "source")
-            ),
-        )
-        for position, x in enumerate(numbers)
-    ]
-    once = [
-        position
-        for position, key in enumerate(keys)
-        if key not in keys[:position] and np.isfinite(key[0])
-    ]
-    once.sort(key=numbers.__getitem__)
-    return compared.isel(comparison=once).assign_coords(
-        along=("comparison", [numbers[i] for i in once])
-    )
+    keys = ("conditions", "measured", "uncertainty", "source")
+    columns = (compared[f"compared_{key}"].values.tolist() for key in keys)
+    positions: dict[tuple[Any, ...], int] = {}  # by place along the parameter, value and source
+    for position, (text, *rest) in enumerate(zip(*columns, strict=True)):
+        place = json.loads(text).get(along)
+        if isinstance(place, int | float):
+            positions.setdefault((place, *rest), position)
+    ordered = sorted(positions, key=lambda key: float(key[0]))
+    once = compared.isel(comparison=[positions[key] for key in ordered])
+    return once.assign_coords(along=("comparison", [key[0] for key in ordered]))
 
 
 def add_measured(
@@ -277,13 +264,8 @@ def add_measured(
 def note_measured(analysis: xr.Dataset, names: list[str], along: str) -> str:
     """Return a caption's sentence on the measurements drawn; "" without any."""
     points = [measurements(analysis, name, along) for name in names]
-    sources = [
-        s
-        for dataset in points
-        if dataset.sizes["comparison"]
-        for s in dataset["compared_source"].values
-    ]
-    if not sources:
+    drawn = [dataset["compared_source"].values for dataset in points if dataset.comparison.size]
+    if not drawn:
         return ""
-    listed = "; ".join(dict.fromkeys(map(str, sources)))
+    listed = "; ".join(dict.fromkeys(map(str, np.concatenate(drawn))))
     return f"Diamonds with expanded uncertainties (k = {COVERAGE:g}): {listed}."

@@ -38,24 +38,6 @@ _STEPS: dict[str, tuple[tuple[float, float, str], ...]] = {
 """By `units` attribute: (smallest magnitude, factor from SI, symbol), the largest step first."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _RULES = {"lobatto": "Gauss-Lobatto", "legendre": "Gauss-Legendre", "layers": "uniform layers"}
-_FIXED = (
-    "velocity",
-    "contact",
-    "beam_model",
-    "load",
-    "sphere_radius",
-    "beam_span",
-    "beam_width",
-    "beam_depth",
-    "beam_yield_stress",
-    "nodes",
-    "points",
-    "rule",
-    "scheme",
-    "courant",
-    "duration",
-)
-"""Parameters that `fixed` lists, in this order; the paper's tables hold the rest of its case."""
 
 
 @dataclass(frozen=True)
@@ -214,9 +196,3 @@ def setting(coordinate: xr.DataArray, where: Iterable[int]) -> str:
         texts = [f"“{text}”" for text in texts]
     listed = listing(texts)
     return f"{parameter(coordinate)} = {listed}{unit(coordinate)}"
-
-
-def fixed(runs: xr.Dataset) -> str:
-    """Return a sentence on the parameters, numerics included, that are the same in all runs."""
-    listed = [setting(runs[name], [0]) for name in _FIXED if name in runs and runs[name].size == 1]
-    return f"In all runs: {'; '.join(listed)}." if listed else ""

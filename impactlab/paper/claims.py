@@ -27,6 +27,24 @@ from impactlab.variables import provenance as made_now
 
 log = logging.getLogger(__name__)
 
+_FIXED = (
+    "velocity",
+    "contact",
+    "beam_model",
+    "load",
+    "sphere_radius",
+    "beam_span",
+    "beam_width",
+    "beam_depth",
+    "beam_yield_stress",
+    "nodes",
+    "points",
+    "rule",
+    "scheme",
+    "courant",
+    "duration",
+)
+"""Parameters that captions list, in this order; the paper's tables hold the rest of its case."""
 MIXED = "depends on the reading"  # what is said of a statement whose cases differ
 SECTIONS = {
     Subject.STATEMENT: ("Statements", "Each entry has a test, and a row per case or reading."),
@@ -114,7 +132,14 @@ def _caption(study: str, figure: Figure, runs: xr.Dataset, analysis: xr.Dataset)
     """Return what is plotted, what all runs share, and why these runs."""
     shown = figure.caption(runs, analysis)
     why = str(runs.attrs.get("description", ""))
-    return " ".join(filter(None, (shown, labels.fixed(runs), why, f"Study: {study}.")))
+    return " ".join(filter(None, (shown, _fixed(runs), why, f"Study: {study}.")))
+
+
+def _fixed(runs: xr.Dataset) -> str:
+    """Return a sentence on the parameters, numerics included, that are the same in all runs."""
+    same = [runs[name] for name in _FIXED if name in runs and runs[name].size == 1]
+    listed = [labels.setting(parameter, [0]) for parameter in same]
+    return f"In all runs: {'; '.join(listed)}." if listed else ""
 
 
 def _summary(assessments: Sequence[Assessment]) -> str:

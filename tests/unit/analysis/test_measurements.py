@@ -166,7 +166,7 @@ def test_a_measured_zero_shows_the_difference_in_its_unit(study):
     found = compared(*study, [zero])
     ((_, line),) = entries(found)
     assert "peak force +22 kN (± " in line
-    ((row,),) = (table.rows for table in sections(found)[0].tables)
+    ((row,),) = (table.rows for table in sections(study[0], found)[0].tables)
     assert row[-2].text == "+22 kN"
     assert "inf" not in line
     # what is not judged says why
@@ -206,7 +206,7 @@ def test_report_and_figures_show_them(study):
         "Beside measurements: 0 of 4 comparisons compatible; peak force +4.8 % (± 0.49, hertz), "
         "peak force −4.7 % (± 0.48, stronge); 1 not judged; 1 of another impact."
     )
-    (section,) = sections(analysis)
+    (section,) = sections(runs, analysis)
     assert [row[-1].text for row in section.tables[0].rows] == [
         "incompatible",
         "incompatible",
