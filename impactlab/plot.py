@@ -272,7 +272,7 @@ def _indices(name: str, size: str) -> _Draw:
             raise ValueError(f"response: is needed with ax, one of {', '.join(listed)}")
         _require("response", response, listed)
         ax = _current(ax)
-        ax.set_title(labels.sentence(labels.response(response)), loc="left")
+        ax.set_title(labels.title(response), loc="left")
         if family is measures.MORRIS:
             indices.plane(ax, runs, analysis, response)
         else:

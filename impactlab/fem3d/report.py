@@ -79,7 +79,7 @@ def _effects(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
             cell = Cell(f"{_signed(value)} ± {_bound(100.0 * width)}", "number")
             cells.append(cell if np.isfinite(value) else Cell("missing", "warning"))
         rows.append(cells)
-    head = ["Effect", *(labels.sentence(labels.response(name)) for name in witness.NAMES)]
+    head = ["Effect", *(labels.title(name) for name in witness.NAMES)]
     return Table("Change of the answer of the paper's beam by each effect", head, rows)
 
 

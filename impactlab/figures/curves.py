@@ -202,7 +202,7 @@ def draw(
             if np.isfinite(run[variable]).any():
                 ax.plot(*line(run), label=curve.label or "_only", **look(curve, markers=markers))
         if not ax.lines:
-            style.remark(ax, "no finite values")
+            style.remark(ax)
         ax.label_outer(remove_inner_ticks=False)
         place = ax.get_subplotspec()
         assert place is not None

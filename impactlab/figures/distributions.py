@@ -134,7 +134,7 @@ def cumulative_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         ax.set_title(labels.axis(labels.response(name), unit.symbol), loc="left")
         values, share, low, high = cumulative(drawn_outputs(runs, name), level)
         if not values.size:
-            responses_grid.empty(ax, "no finite values")
+            responses_grid.empty(ax)
             continue
         steps = scales.spread(values.size, _MOST)
         x = unit(values[steps])

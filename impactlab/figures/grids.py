@@ -51,7 +51,7 @@ def _against_velocity(
     figure, (ax,) = style.panels(1, columns=1, height=62)
     unit = _add_curves(ax, runs, analysis, name, runs["velocity"], selected)
     if not ax.lines:
-        style.remark(ax, "no finite values")
+        style.remark(ax)
     ax.set_xlabel(parameter_axis(runs["velocity"]))
     ax.set_ylabel(labels.axis(label, unit.symbol))
     return figure, ax, selected
@@ -173,7 +173,7 @@ def _law_forces(ax: Axes, runs: xr.Dataset, selected: Plan) -> None:
         scales.linear(ax, "xy")
         ax.set(xlim=(0.0, None), ylim=(0.0, None))
     else:
-        responses_grid.empty(ax, "no finite values")
+        responses_grid.empty(ax)
 
 
 def _law_responses(
@@ -192,7 +192,7 @@ def _law_responses(
     curves.add_measured(ax, analysis, name, "velocity", display(runs["velocity"]), unit)
     ax.set(xlabel=labels.axis("velocity", "m/s"), ylabel=label)
     if not ax.lines:
-        responses_grid.empty(ax, "no finite values")
+        responses_grid.empty(ax)
         return
     scales.fit(ax, "x", speed)
     # dents span decades, and those of zero (Hertz) or below (some laws, just beyond yield) do not
@@ -247,7 +247,7 @@ def response_curves(
     scales.fit(ax, "x", display(along)(along))
     scales.fit(ax, "y", scales.drawn(ax, "y"))
     if not ax.lines:
-        responses_grid.empty(ax, "no finite values")
+        responses_grid.empty(ax)
     return labels.axis(labels.response(name), unit.symbol)
 
 
@@ -306,7 +306,7 @@ def _shear_curve(
 def _scale_changes(ax: Axes) -> None:
     """Scale the axes to the curves, then draw the thresholds."""
     if not ax.lines:
-        responses_grid.empty(ax, "no finite values")
+        responses_grid.empty(ax)
         return
     scales.logarithmic(ax, "x", scales.drawn(ax, "x"))
     changes = scales.drawn(ax, "y")

@@ -111,10 +111,10 @@ def bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
             dashes = (0, (3, 1.5))
             ax.vlines(ends, len(rows) - 0.5, -0.5, color=colour, linestyle=dashes, linewidth=0.9)
     ax.axvline(0.0, color="0.15", linewidth=0.6)
+    verdict = access.verdict(analysis, judged, response)
     if np.isfinite(analysis[shown[0].name].sel(response=response)).any():
-        responses_grid.write_verdict(ax, analysis, judged, response, sound=False)
+        responses_grid.warn(ax, verdict)
     else:
-        verdict = access.verdict(analysis, judged, response)
         style.remark(ax, f"undefined:\n{verdict.words if verdict else 'no reason is given'}")
     name_places(ax, "y", listed)
     ax.tick_params(axis="y", length=0)
@@ -164,13 +164,13 @@ def index_convergence(measure: Measure) -> Figure:
                 look = style.distinct(number) | {"label": parameter}
                 _line_with_band(ax, samples, y, margin, markersize=2.5, **look)
             if not ax.lines:
-                style.remark(ax, "no finite values")
+                style.remark(ax)
             ax.set_xscale("log", base=2)
             scales.at(ax, "x", samples[::-2])
             low, high = ax.get_ylim()
             ax.set_ylim(max(low, _ENDS[0]), min(high, _ENDS[1]))
             scales.linear(ax, "y")
-            responses_grid.write_verdict(ax, analysis, _VERDICT, name, sound=False)
+            responses_grid.warn(ax, access.verdict(analysis, _VERDICT, name))
         return style.finish(figure, "Base samples (–)", "Share of the variance (–)")
 
     return plot
@@ -209,7 +209,7 @@ def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     colours = Normalize(0.0, max(map(float, tops)))
     for position, (name, ax) in enumerate(axes.items()):
         image = _map(ax, values[name], significant[name], colours)
-        responses_grid.write_verdict(ax, analysis, _VERDICT, name, sound=False)
+        responses_grid.warn(ax, access.verdict(analysis, _VERDICT, name))
         _number(ax, listed, named=position % responses_grid.COLUMNS == 0)
     thin = 20 * min(len(axes), 2)
     bar = figure.colorbar(
@@ -297,9 +297,9 @@ def plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> No
             xerr = margin[number] if np.isfinite(margin[number]) else None
             look = style.distinct(number) | {"linestyle": "", "elinewidth": 0.8}
             ax.errorbar(x[number], y[number], xerr=xerr, label=parameter, **look)
-    responses_grid.write_verdict(ax, analysis, _VERDICT, response, sound=False)
+    responses_grid.warn(ax, access.verdict(analysis, _VERDICT, response))
     if not ax.lines:
-        responses_grid.empty(ax, "no finite values")
+        responses_grid.empty(ax)
         return
     ax.set(xlabel=labels.axis("mean µ*", unit.symbol), ylabel=labels.axis("spread σ", unit.symbol))
     right, top = float(np.nanmax(x + np.nan_to_num(margin, posinf=0.0))), np.nanmax(y)
@@ -332,7 +332,7 @@ def _time_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, s
 def indices_over_time(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a column per history: first order, total order and mean, one beneath the other."""
     names = measures.histories(analysis)
-    histories = [labels.sentence(labels.response(name)) for name in names]
+    histories = [labels.title(name) for name in names]
     titles = [
         f"{history}, {order}" for order in measures.OVER_TIME.values() for history in histories
     ]
@@ -357,14 +357,12 @@ def _at_times(ax: Axes, history: xr.Dataset, order: str, time: Display) -> None:
         look = style.distinct(number) | {"marker": "", "linewidth": 0.9}
         _line_with_band(ax, x, y, margin, label=parameter, **look)
     if not ax.lines:
-        style.remark(ax, "no finite values")
+        style.remark(ax)
     low, high = ax.get_ylim()
     ax.set_ylim(max(min(low, 0.0), _ENDS[0]), min(max(high, 1.0), _ENDS[1]))
     ax.set_ylabel("Share (–)")
     scales.linear(ax, "xy")
-    verdict = access.read(history[measures.HISTORY_VERDICT])
-    if not verdict.sound:
-        responses_grid.write(ax, verdict)
+    responses_grid.warn(ax, access.read(history[measures.HISTORY_VERDICT]))
 
 
 def _mean(ax: Axes, history: xr.Dataset, time: Display) -> None:
@@ -374,6 +372,6 @@ def _mean(ax: Axes, history: xr.Dataset, time: Display) -> None:
     x, look = time(history["time"].values), {"color": "0.15", "linewidth": 0.9}
     _line_with_band(ax, x, unit(mean.values), unit(deviation), label="_data: mean", **look)
     if not ax.lines:
-        style.remark(ax, "no finite values")
+        style.remark(ax)
     ax.set_ylabel(labels.axis("mean", unit.symbol))
     scales.linear(ax, "xy")

@@ -71,6 +71,11 @@ def response(name: str) -> str:
     return name.replace("_", " ")
 
 
+def title(name: str) -> str:
+    """Return a response's name in words, with a capital first letter: "Peak force"."""
+    return sentence(response(name))
+
+
 def beam_model(name: str) -> str:
     """Return the proper name of a model of the beam: "Euler-Bernoulli"."""
     further = wings.models().get(name)

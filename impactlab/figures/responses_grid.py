@@ -22,7 +22,7 @@ def panels(
 
     height: of a row, mm; beneath: of what stands below all rows, mm.
     """
-    titles = [labels.sentence(labels.response(name)) for name in names]
+    titles = [labels.title(name) for name in names]
     figure, axes = style.titled_panels(titles, columns=COLUMNS, height=height)
     figure.set_figheight(figure.get_figheight() + beneath * style.MILLIMETRE)
     return figure, dict(zip(names, axes, strict=True))
@@ -35,17 +35,10 @@ def shown(runs: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
     return values * unit.scale, labels.axis(labels.response(name), unit.symbol)
 
 
-def write_verdict(
-    ax: Axes, analysis: xr.Dataset, variable: str, name: str, *, sound: bool = True
-) -> None:
-    """Write the response's verdict under the panel's title, bold where it is a warning.
-
-    sound: also where it is no warning.
-    """
-    verdict = access.verdict(analysis, variable, name)
-    if verdict is None or (verdict.sound and not sound):
-        return
-    write(ax, verdict)
+def warn(ax: Axes, verdict: access.Verdict | None) -> None:
+    """Write a verdict under the panel's title if it is a warning."""
+    if verdict and not verdict.sound:
+        write(ax, verdict)
 
 
 def write(ax: Axes, verdict: access.Verdict) -> None:
@@ -55,7 +48,7 @@ def write(ax: Axes, verdict: access.Verdict) -> None:
     style.note(ax, verdict.words, place, (0, 3), warning=warning, xycoords="axes fraction")
 
 
-def empty(ax: Axes, text: str) -> None:
+def empty(ax: Axes, text: str = "no finite values") -> None:
     """Write words in place of curves, and leave out the ticks."""
     style.remark(ax, text)
     ax.set(xticks=[], yticks=[])

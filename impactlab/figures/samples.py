@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
+from impactlab.analysis.distribution import filtered
 from impactlab.analysis.regimes import of_runs
 from impactlab.figures import access, labels, record, responses_grid, scales, style
 from impactlab.figures.access import is_sample, usable, varied
@@ -58,7 +59,7 @@ def scatter(response: str) -> Figure:
             opening += " Diamonds: mean over all runs with this word."
         return opening, access.missing_note(runs, [response])
 
-    title = f"{labels.sentence(labels.response(response))} against each parameter"
+    title = f"{labels.title(response)} against each parameter"
 
     @record.figure(
         title,
@@ -135,7 +136,7 @@ def scatter_runs(ax: Axes, column: xr.DataArray, y: Floats, middles: Floats) -> 
     x = places(column)
     finite = np.isfinite(x) & np.isfinite(y)
     if not np.isfinite(y).any():
-        style.remark(ax, "no finite values")
+        style.remark(ax)
     x, y = x[finite], y[finite]
     if not x.size:
         return
@@ -272,17 +273,10 @@ def _shares(ax: Axes, column: xr.DataArray, failed: NDArray[np.bool_]) -> None:
 
 def _distances(runs: xr.Dataset) -> dict[str, float]:
     """Return the Kolmogorov-Smirnov distances of the most telling parameters, the largest first."""
-    failed, distances = access.failed(runs).values, {}
-    for name in varied(runs):
-        values = runs[name].values
-        if labels.words(runs[name]):  # they have no order: the total variation of their shares
-            indicators = values[:, None] == np.unique(values)
-            distances[name] = float(
-                abs(indicators[failed].mean(0) - indicators[~failed].mean(0)).sum() / 2
-            )
-            continue
-        test = scipy.stats.ks_2samp(values[failed], values[~failed], method="asymp")
-        distances[name] = float(test.statistic)
+    failed = access.failed(runs).values.astype(float)
+    columns = {name: runs[name].values for name in varied(runs)}
+    apart = filtered(failed, 0.5, columns)["exceedance_distance"]
+    distances = dict(zip(columns, apart, strict=True))
     ranked = sorted(distances, key=lambda name: -distances[name])
     return {name: distances[name] for name in ranked[:3]}
 

@@ -88,7 +88,7 @@ def force_history(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             end = float(x.max(initial=0.0, where=y > 0))
             ax.set(xlim=(0.0, 1.05 * end or None), ylim=(0.0, None))
         else:
-            style.remark(ax, "no finite values")
+            style.remark(ax)
     figure.supylabel(labels.axis("contact force", unit.symbol))
     figure.supxlabel(labels.axis(_TIME, time.symbol))
     return figure
@@ -143,7 +143,7 @@ def displacement_history(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             ax.set_ylim(_until_flight(runs.isel(where), unit))
             ax.axhline(0.0, label="_guide", linestyle="-", **style.GUIDE)
         else:
-            style.remark(ax, "no finite values")
+            style.remark(ax)
     across, up = labels.axis(_TIME, time.symbol), labels.axis("displacement", unit.symbol)
     return style.finish(figure, across, up, order=list(_DISPLACEMENTS.values()))
 
@@ -217,7 +217,7 @@ def force_indentation_by_law(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         if ax.lines:
             ax.set(xlim=(0.0, None), ylim=(0.0, None))
         else:
-            style.remark(ax, "no finite values")
+            style.remark(ax)
     across = labels.axis("indentation", depth.symbol)
     return selected.finish(figure, across, labels.axis("contact force", force.symbol))
 

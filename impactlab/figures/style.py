@@ -220,7 +220,7 @@ def note(
     axes.annotate(text, place, offset, textcoords="offset points", **look, **where)
 
 
-def remark(axes: Axes, text: str) -> None:
+def remark(axes: Axes, text: str = "no finite values") -> None:
     """Write words in place of data, in the middle of empty axes."""
     axes.grid(visible=False)
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=MUTED)

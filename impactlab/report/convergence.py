@@ -68,7 +68,7 @@ def convergence(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             cells = (
                 _cells(numbers, axis) if axis != "points" else _points_cells(analysis, needs, name)
             )
-            rows.append([labels.sentence(labels.response(name)), judged, *cells.values()])
+            rows.append([labels.title(name), judged, *cells.values()])
         remarks = [explanation, *_remarks(needs.analysis, axis)]
         meanings: dict[str, str] = {}
         for key in ("behaviour", "verdict"):
@@ -91,7 +91,7 @@ def _needs(needs: Needs) -> Table:
             grid = [needs.words(need), Cell(labels.percent(float(errors[need])), "number")]
         least = Cell(labels.percent(float(errors.min())), "number")
         doubts = ", ".join(needs.doubts(name)) or "–"
-        rows.append([labels.sentence(labels.response(name)), *grid, least, doubts])
+        rows.append([labels.title(name), *grid, least, doubts])
     share = labels.percent(TOLERANCE)
     head = ["Response", f"Within {share} from", "Error there", "Least error", "Doubts"]
     return Table(f"Grid that keeps each response within {share}", head, rows, [_WITHIN])

@@ -41,7 +41,7 @@ def limit_entries(runs: xr.Dataset, analysis: xr.Dataset) -> list[tuple[str, str
     entries = []
     for name in limited(runs, analysis):
         text, led = probability(analysis.sel(response=name)), leading(runs, analysis, name)
-        response = labels.sentence(labels.response(name))
+        response = labels.title(name)
         if led:
             text += f"; runs above it have {led}"
         entries.append((f"{response} above {_limit(runs, analysis, name)}", text))
@@ -115,7 +115,7 @@ def limit_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
     for name in names:
         statistics = analysis.sel(response=name)
         counts = [Cell(f"{int(np.nan_to_num(statistics[key])):,}", "number") for key in _COUNTS]
-        response = labels.sentence(labels.response(name))
+        response = labels.title(name)
         text = Cell(probability(statistics), "number")
         rows.append([response, _limit(runs, analysis, name), *counts, text])
         if statistics["exceedance_distance"].notnull().any():

@@ -52,7 +52,7 @@ def write_explorer(runs: xr.Dataset, analysis: xr.Dataset, report: Path) -> str:
             if verdict.sound
         ],
         refused=[
-            (labels.sentence(labels.response(name)), verdict.meaning)
+            (labels.title(name), verdict.meaning)
             for name, verdict in verdicts.items()
             if not verdict.sound
         ],
@@ -121,7 +121,7 @@ def _response(surrogate: xr.Dataset, values: xr.DataArray) -> dict[str, Any]:
     ]
     return {
         "name": name,
-        "label": labels.sentence(labels.response(name)),
+        "label": labels.title(name),
         "meaning": str(surrogate["response_long_name"].item()),
         "symbol": symbol(units),
         "prefixed": units in PREFIXED,

@@ -107,7 +107,7 @@ def _row(runs: xr.Dataset, row: xr.Dataset) -> Row:
     difference = _signed(row) if np.isfinite(model) else "–"
     kind = "" if verdict.sound else "warning"
     return [
-        Cell(labels.sentence(labels.response(quantity))),
+        Cell(labels.title(quantity)),
         ", ".join(stated) or "–",
         case.replace("_", " ") or "–",
         Cell(f"{labels.number(measured)} ± {labels.number(uncertainty, 2)} {unit.symbol}".rstrip()),

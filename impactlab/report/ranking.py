@@ -72,7 +72,7 @@ def entries(
             none = "no index is defined"
         numbers = _ranked(index)[:_MOST]
         text = ", ".join(_texts(runs, analysis, family, response, numbers)) or none
-        listed.append((labels.sentence(labels.response(response)), text))
+        listed.append((labels.title(response), text))
     return listed
 
 

@@ -21,7 +21,7 @@ def regime_entries(runs: xr.Dataset) -> list[tuple[str, str]]:
     entries = []
     for name in responses(runs):
         if (middles := of_runs(runs, name)).size:
-            subject = f"{labels.sentence(labels.response(name))} in several regimes"
+            subject = f"{labels.title(name)} in several regimes"
             entries.append((subject, _regimes(runs, name, middles)))
     return entries
 

@@ -154,7 +154,7 @@ def history_entries(analysis: xr.Dataset) -> list[tuple[str, str]]:
         verdict = access.read(indices[measures.HISTORY_VERDICT])
         if not verdict.sound:
             texts.append(verdict.meaning)
-        entries.append((f"{labels.sentence(labels.response(history))} over time", "; ".join(texts)))
+        entries.append((f"{labels.title(history)} over time", "; ".join(texts)))
     return entries
 
 
@@ -218,7 +218,7 @@ def _differences(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
             fitted = measures.index(analysis, f"surrogate_{order.name}", name)
             apart = np.abs(sampled.values - fitted.values) > sampled.margins + fitted.margins
             if apart.any():
-                response = labels.sentence(labels.response(name))
+                response = labels.title(name)
                 sentences.append(
                     f"{response}: the {order.label.replace(' ', '-')} indices of the runs and of "
                     "the surrogate differ by more than their intervals for "
@@ -301,7 +301,7 @@ def second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
         indices = analysis.isel(parameter=first, other_parameter=second)
         cells = (_index(indices.sel(response=name), "second_order") for name in shown)
         rows.append([Cell(labels.sentence(pair)), *cells])
-    head = ["Pair", *(labels.sentence(labels.response(name)) for name in shown)]
+    head = ["Pair", *(labels.title(name) for name in shown)]
     return Table(_caption("Second-order Sobol indices", analysis), head, rows)
 
 
@@ -322,7 +322,7 @@ def named(analysis: xr.Dataset, response: str, verdict: str = "sensitivity_verdi
 
 def _judged(name: str, verdict: access.Verdict | None) -> Cell:
     text = verdict.words if verdict and not verdict.sound else ""
-    return Cell(labels.sentence(labels.response(name)), "warning" if text else "", text)
+    return Cell(labels.title(name), "warning" if text else "", text)
 
 
 def with_margin(value: float, margin: float) -> str:

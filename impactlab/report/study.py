@@ -16,6 +16,7 @@ from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.samples import scatter
 from impactlab.methods import NO_DISTRIBUTION
+from impactlab.methods.distributions import distribution_of
 from impactlab.methods.runs import correlations
 from impactlab.report import distribution, measured, sensitivity
 from impactlab.report.answer import entries
@@ -27,8 +28,6 @@ from impactlab.report.regimes import regime_entries
 
 _GRID_VALUES = 12  # a longer list of values of a grid is replaced by its range
 _FAILED_RUNS = 20  # largest number of failed runs listed one by one
-_OTHER = ("distribution", "units", "long_name", "function")
-"""Attributes of a varied parameter that are no arguments of its distribution."""
 _EACH = "Each response against each parameter"
 _SCATTER = (
     "A line that bends or tilts shows a parameter that matters by itself; points that fan out "
@@ -169,9 +168,10 @@ def _values(coordinate: xr.DataArray) -> Row:
             texts.append(f"{word} {labels.percent(weight, 3)}")
     elif "distribution" in attrs:
         scale = display(coordinate).scale
-        for key in (key for key in attrs if key not in _OTHER):
+        arguments = distribution_of(attrs).arguments().items()
+        for key, value in (pair for pair in arguments if pair[0] != "distribution"):
             ratio = "geometric" in key  # without the parameter's unit
-            text = labels.number(float(attrs[key]) * (1.0 if ratio else scale))
+            text = labels.number(float(value) * (1.0 if ratio else scale))
             texts.append(f"{key.replace('_', ' ')} {text}{'' if ratio else unit}")
     if texts:
         name = str(attrs["distribution"]).replace("_", "-")
@@ -272,7 +272,7 @@ def _ranges(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
             cells = [*distribution.summary(analysis, name, unit), *cells]
         doubt = beside(runs, analysis, name)
         detail = "; ".join(filter(None, (runs[name].attrs.get("long_name"), doubt)))
-        response = Cell(labels.sentence(labels.response(name)), "warning" if doubt else "", detail)
+        response = Cell(labels.title(name), "warning" if doubt else "", detail)
         missing = Cell(str(gaps), "warning" if gaps else "number")
         rows.append([response, unit.symbol or "–", *cells, missing])
     head = ["Response", "Unit", *heads, "Smallest", "Largest", "Runs missing"]

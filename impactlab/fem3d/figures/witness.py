@@ -178,10 +178,10 @@ def _values(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) -> None
         values = unit(side(runs, analysis, name, model).value)
         if np.isfinite(values).any():
             ax.plot(runs["velocity"].values, values, **_look(position, model))
-    ax.set_title(labels.sentence(labels.response(name)), loc="left")
+    ax.set_title(labels.title(name), loc="left")
     ax.set_ylabel(labels.axis(labels.response(name), unit.symbol))
     if not ax.lines:
-        style.remark(ax, "no finite values")
+        style.remark(ax)
         return
     shown = scales.drawn(ax, "y")
     if np.nanmin(shown) > 0:
@@ -206,7 +206,7 @@ def _differences(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str) ->
             ends += [*(100.0 * gap.value - reach), *(100.0 * gap.value + reach)]
     ax.set_title(f"Δ {labels.response(name)}", loc="left")  # as short as its column is wide
     if not ax.containers:
-        style.remark(ax, "no finite values")
+        style.remark(ax)
         return
     ax.axhline(0.0, label="_guide", **style.GUIDE)
     scales.linear(ax, "y")
@@ -261,7 +261,7 @@ def _curves(ax: Axes, runs: xr.Dataset) -> None:
                 label=f"{label}, {behaviour}",
             )
     if not ax.lines:
-        style.remark(ax, "no finite values")
+        style.remark(ax)
     ax.set_xlabel(labels.axis("indentation", depth.symbol))
     ax.set_ylabel(labels.axis("contact force", force.symbol))
     scales.linear(ax, "xy")
