@@ -181,23 +181,22 @@ def verdict(analysis: xr.Dataset, variable: str, response: str) -> Verdict | Non
 
 def read(flag: xr.DataArray) -> Verdict:
     """Return the verdict in a variable of CF flags that holds one value."""
-    return _read(flag, int(flag))
+    (single,) = occurring(flag)
+    return single
 
 
 def occurring(flags: xr.DataArray) -> list[Verdict]:
     """Return every flag that occurs in a variable of CF flags, by rising value; none without."""
-    occurring = np.unique(flags.values) if "flag_values" in flags.attrs else ()
-    return [_read(flags, int(value)) for value in occurring]
-
-
-def _read(array: xr.DataArray, value: int) -> Verdict:
-    numbers = [int(flag) for flag in np.atleast_1d(array.attrs["flag_values"])]
-    flags = dict(zip(numbers, str(array.attrs["flag_meanings"]).split(), strict=True))
-    flag = flags.get(value, "unknown")
-    sound = str(array.attrs.get("sound_flags", "converged usable")).split()
-    lines = str(array.attrs.get("flag_descriptions", "")).splitlines()
+    if "flag_values" not in flags.attrs:
+        return []
+    numbers = np.atleast_1d(flags.attrs["flag_values"]).astype(int).tolist()
+    names = dict(zip(numbers, str(flags.attrs["flag_meanings"]).split(), strict=True))
+    sound = str(flags.attrs.get("sound_flags", "converged usable")).split()
+    lines = str(flags.attrs.get("flag_descriptions", "")).splitlines()
     meanings = {name: meaning for name, _, meaning in (line.partition(": ") for line in lines)}
-    return Verdict(flag, flag in sound, meanings.get(flag, ""), value)
+    values = np.unique(flags.values).astype(int).tolist()
+    flagged = [(names.get(value, "unknown"), value) for value in values]
+    return [Verdict(name, name in sound, meanings.get(name, ""), value) for name, value in flagged]
 
 
 def confidence(analysis: xr.Dataset) -> str:

@@ -155,8 +155,7 @@ def exceedance(response: str) -> Figure:
         statistics = analysis.sel(response=response)
         above, total, missing = (int(np.nan_to_num(statistics[key])) for key in _COUNTS)
         below = total - missing - above
-        unit = display(runs[response])
-        limit = f"{labels.number(float(unit(statistics['limit'])))} {unit.symbol}".strip()
+        limit = labels.amount(runs[response], limits(runs)[response])
         return (
             "Cumulative distribution of each parameter, of words the share of each, in the "
             f"{above:,} draws with a {labels.response(response)} above {limit}, and in the other "

@@ -185,6 +185,11 @@ def unit(coordinate: xr.DataArray) -> str:
     return f" {symbol}" if symbol else ""
 
 
+def amount(variable: xr.DataArray, value: float, digits: int = 4) -> str:
+    """Return an SI value in the display unit of a variable: "12.3 kN"."""
+    return number(float(display(variable)(value)), digits) + unit(variable)
+
+
 def value(coordinate: xr.DataArray, position: int) -> str:
     """Return one value with its unit, or with the name of what it counts: "5 m/s", "601 nodes"."""
     name, text = str(coordinate.name), values(coordinate, [position])[0]

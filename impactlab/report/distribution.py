@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.distribution import DistributionVerdict, significance
+from impactlab.analysis.distribution import DistributionVerdict, limits, significance
 from impactlab.figures import access, labels
 from impactlab.figures.distributions import exceedance, limited, spread_evenly
-from impactlab.figures.labels import Display, display
+from impactlab.figures.labels import Display
 from impactlab.methods.runs import correlations
 from impactlab.report.page import Cell, Row, Section, Table
 
@@ -44,7 +44,7 @@ def limit_entries(runs: xr.Dataset, analysis: xr.Dataset) -> list[tuple[str, str
         response = labels.title(name)
         if led:
             text += f"; runs above it have {led}"
-        entries.append((f"{response} above {_limit(runs, analysis, name)}", text))
+        entries.append((f"{response} above {labels.amount(runs[name], limits(runs)[name])}", text))
     return entries
 
 
@@ -77,11 +77,6 @@ def _percent(share: float, width: float) -> str:
     """Return a share in per cent, with the digits that an interval of this width leaves."""
     decimals = int(np.clip(1 - np.floor(np.log10(100 * width)), 0, 8)) if width > 0 else 0
     return f"{100 * share:.{decimals}f} %"
-
-
-def _limit(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
-    unit, limit = display(runs[name]), float(analysis["limit"].sel(response=name))
-    return f"{labels.number(float(unit(limit)))} {unit.symbol}".strip()
 
 
 def leading(runs: xr.Dataset, analysis: xr.Dataset, name: str) -> str:
@@ -117,7 +112,8 @@ def limit_sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
         counts = [Cell(f"{int(np.nan_to_num(statistics[key])):,}", "number") for key in _COUNTS]
         response = labels.title(name)
         text = Cell(probability(statistics), "number")
-        rows.append([response, _limit(runs, analysis, name), *counts, text])
+        limit = labels.amount(runs[name], limits(runs)[name])
+        rows.append([response, limit, *counts, text])
         if statistics["exceedance_distance"].notnull().any():
             apart.append([response, *_distances(analysis, statistics)])
     parameters = [

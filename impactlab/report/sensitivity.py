@@ -347,9 +347,9 @@ def in_units(response: xr.DataArray, value: float, margin: float = np.inf) -> st
     """Return an effect in the response's display unit: "12.3 kN ± 0.4"."""
     if not np.isfinite(value):
         return "undefined"
-    unit = display(response)
-    text = labels.number(float(unit(value)), 3) + labels.unit(response)
-    return f"{text} ± {labels.number(float(unit(margin)), 2)}" if np.isfinite(margin) else text
+    text = labels.amount(response, value, 3)
+    width = labels.number(float(display(response)(margin)), 2)
+    return f"{text} ± {width}" if np.isfinite(margin) else text
 
 
 def _bounded(share: float) -> str:
