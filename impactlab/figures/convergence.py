@@ -17,7 +17,7 @@ from impactlab.figures.access import known, responses, usable
 from impactlab.figures.curves import Choice, Plan, plan
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
-from impactlab.figures.needs import Needs, needed
+from impactlab.figures.needs import needed
 from impactlab.model.cost import node_steps
 from impactlab.model.parameters import REFINEMENTS
 from impactlab.solver import BEAM_MODELS, SCHEMES
@@ -122,7 +122,7 @@ def draw(
     selected, needs = axis.plan(runs), needed(runs, analysis)
     figure, axes = responses_grid.panels(axis.names(runs), height=44)
     for name, ax in axes.items():
-        _write_verdict(ax, needs, axis.name, name)
+        responses_grid.write(ax, needs.verdict(axis.name, name) if needs else None)
         verdicts = access.occurring(_of(analysis, f"{axis.name}_verdict", name))
         if any(verdict.flag == "not_convergent_by_design" for verdict in verdicts):
             _draw_values(ax, runs, name, spacing, selected)
@@ -146,12 +146,6 @@ def draw(
         scales.logarithmic(ax, "y", scales.drawn(ax, "y"))
         _scale_spacing(ax, spacing)
     return selected.finish(figure, label, _DIFFERENCE)
-
-
-def _write_verdict(ax: Axes, needs: Needs | None, axis: str, name: str) -> None:
-    """Write the verdict of the finest grid under the panel's title, as tables and answer do."""
-    if needs and (verdict := needs.verdict(axis, name)):
-        responses_grid.write(ax, verdict)
 
 
 def _draw_values(ax: Axes, runs: xr.Dataset, name: str, spacing: Floats, selected: Plan) -> None:
@@ -299,7 +293,7 @@ def points_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     needs = needed(runs, analysis)
     figure, axes = responses_grid.panels(_POINTS.names(runs), height=40)
     for name, ax in axes.items():
-        _write_verdict(ax, needs, "points", name)
+        responses_grid.write(ax, needs.verdict("points", name) if needs else None)
         error = abs(analysis["points_error"].sel(response=name)).transpose("points", ...)
         for curve, values in _above_round_off(error, selected):
             curves.add(ax, points, values, curve)

@@ -102,18 +102,10 @@ def drawn(figure: Figure) -> Iterator[Drawn]:
             for series in ax.series:
                 finite = np.isfinite(series.x) & np.isfinite(series.y)
                 if finite.any():
-                    yield Drawn(
-                        panel,
-                        series.label,
-                        across,
-                        up,
-                        series.x[finite],
-                        series.y[finite],
-                        series.low[finite],
-                        series.high[finite],
-                        _categories(ax, series, finite),
-                        "x" in ax.names,
-                    )
+                    columns = (series.x, series.y, series.low, series.high)
+                    points = (column[finite] for column in columns)
+                    names = _categories(ax, series, finite)
+                    yield Drawn(panel, series.label, across, up, *points, names, "x" in ax.names)
 
 
 def _categories(ax: Panel, series: Series, finite: NDArray[np.bool_]) -> list[str]:

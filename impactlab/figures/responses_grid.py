@@ -41,8 +41,10 @@ def warn(ax: Axes, verdict: access.Verdict | None) -> None:
         write(ax, verdict)
 
 
-def write(ax: Axes, verdict: access.Verdict) -> None:
-    """Write a verdict under the panel's title, bold where it is a warning."""
+def write(ax: Axes, verdict: access.Verdict | None) -> None:
+    """Write a verdict, if there is one, under the panel's title, bold where it is a warning."""
+    if verdict is None:
+        return
     ax.set_title(ax.get_title(loc="left"), loc="left", pad=12)
     place, warning = (0.0, 1.0), not verdict.sound
     style.note(ax, verdict.words, place, (0, 3), warning=warning, xycoords="axes fraction")
