@@ -103,9 +103,9 @@ def drawn(figure: Figure) -> Iterator[Drawn]:
                 finite = np.isfinite(series.x) & np.isfinite(series.y)
                 if finite.any():
                     columns = (series.x, series.y, series.low, series.high)
-                    points = (column[finite] for column in columns)
-                    names = _categories(ax, series, finite)
-                    yield Drawn(panel, series.label, across, up, *points, names, "x" in ax.names)
+                    x, y, low, high = (column[finite] for column in columns)
+                    names, named = _categories(ax, series, finite), "x" in ax.names
+                    yield Drawn(panel, series.label, across, up, x, y, low, high, names, named)
 
 
 def _categories(ax: Panel, series: Series, finite: NDArray[np.bool_]) -> list[str]:
