@@ -19,6 +19,8 @@ from impactlab.variables import FAILED, RESPONSES, of_function, reasons, status_
 
 SAMPLED = ("time", "x", "z")
 """Dimensions within a run; every other dimension of a variable of runs.nc is the design's."""
+VERDICT = "sensitivity_verdict"
+"""Variable of the verdicts on sensitivity indices."""
 UNEXPLAINED = "no reason is recorded"
 
 
@@ -41,6 +43,14 @@ def responses(runs: xr.Dataset) -> list[str]:
     if not of_function(runs):
         listed = [*RESPONSES, *(name for name in listed if name not in RESPONSES)]
     return [name for name in listed if name in runs.data_vars]
+
+
+def leading(runs: xr.Dataset, candidates: Sequence[str]) -> str:
+    """Return the response that the study's title names first, or else the first candidate."""
+    title = str(runs.attrs.get("title", "")).lower()
+    places = {name: title.find(labels.response(name).lower()) for name in candidates}
+    named = [name for name in candidates if places[name] >= 0]
+    return min(named, key=places.__getitem__, default=candidates[0])
 
 
 def known(analysis: xr.Dataset, response: str) -> bool:
@@ -177,6 +187,12 @@ def verdict(analysis: xr.Dataset, variable: str, response: str) -> Verdict | Non
     if variable not in analysis or not known(analysis, response):
         return None
     return read(analysis[variable].sel(response=response))
+
+
+def is_sound(analysis: xr.Dataset, response: str) -> bool:
+    """Return whether the indices of a response are usable, as far as the analysis judges them."""
+    judgement = verdict(analysis, VERDICT, response)
+    return judgement is None or judgement.sound
 
 
 def read(flag: xr.DataArray) -> Verdict:

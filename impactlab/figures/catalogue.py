@@ -11,6 +11,7 @@ from impactlab.figures import (
     distributions,
     grids,
     indices,
+    labels,
     measures,
     samples,
     single_runs,
@@ -65,6 +66,34 @@ CATALOGUE = {figure.name: figure for figure in (*ANSWERS, *INDICES)}
 """Every figure by name, in the order of the report, but for those of a single response."""
 
 
+_LEADING = (*(family.figure for family in FAMILIES), "parameter_effects")
+"""Figures of a panel per response whose panel of the headline's response leads a report."""
+LEAD = "lead"
+"""Name of the figure that shows the response of the answer's headline alone."""
+_PANELS = 2
+"""Most panels of a figure that leads a report as it is."""
+
+
+def _lead(runs: xr.Dataset, analysis: xr.Dataset, base: Figure) -> Figure:
+    """Return a figure of one panel per response with the panel of the headline's response alone."""
+    names = access.responses(runs)
+    if base is not grids.parameter_effects:
+        names = [name for name in names if access.known(analysis, name)]
+        names = [name for name in names if access.is_sound(analysis, name)] or names
+    response = access.leading(runs, names)
+
+    def alone(runs: xr.Dataset) -> xr.Dataset:
+        return runs.drop_vars([name for name in access.responses(runs) if name != response])
+
+    return Figure(
+        LEAD,
+        f"{base.title}: {labels.response(response)}",
+        lambda runs, analysis: len(access.responses(runs)) > _PANELS,
+        lambda runs, analysis: base.plot(alone(runs), analysis),
+        lambda runs, analysis: base.caption(alone(runs), analysis),
+    )
+
+
 def applicable(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Figure]:
     """Return the figures that apply to a study, by name, in the order of the report."""
     further = access.further_models(runs)
@@ -73,4 +102,7 @@ def applicable(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Figure]:
     scatters = map(samples.scatter, access.responses(runs))
     beyond = [distributions.exceedance(name) for name in limits(runs) if name in runs]
     everything = (*of_wings, *beyond, *answers, *scatters, *INDICES)
-    return {figure.name: figure for figure in everything if figure.applies(runs, analysis)}
+    figures = {figure.name: figure for figure in everything if figure.applies(runs, analysis)}
+    first = next((figures[name] for name in _LEADING if name in figures), None)
+    lead = [_lead(runs, analysis, first)] if first else []
+    return {figure.name: figure for figure in lead if figure.applies(runs, analysis)} | figures

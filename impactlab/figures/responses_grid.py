@@ -13,6 +13,8 @@ from impactlab.figures.access import usable
 from impactlab.figures.labels import display
 
 COLUMNS = 3
+_ALONE = 50.0
+"""Least height of a panel that stands alone, mm."""
 
 
 def panels(
@@ -22,6 +24,7 @@ def panels(
 
     height: of a row, mm; beneath: of what stands below all rows, mm.
     """
+    height = max(height, _ALONE) if len(names) == 1 else height
     titles = [labels.title(name) for name in names]
     figure, axes = style.titled_panels(titles, columns=COLUMNS, height=height)
     figure.set_figheight(figure.get_figheight() + beneath * style.MILLIMETRE)

@@ -91,7 +91,7 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None) -> tuple[str, list[li
     if (families := measures.families(runs, analysis)) and analysed(runs, analysis):
         headline, findings, note = _of_sample(runs, analysis, families)
     elif (needs := needed(runs, analysis)) and not _effects_lead(runs):
-        headline, findings = _convergence(needs, _asked(runs, [*needs.errors]))
+        headline, findings = _convergence(needs, access.leading(runs, [*needs.errors]))
         note = "± the difference to the finest grid and the numerical uncertainty of that grid."
     else:
         headline, findings, note = _of_grid(runs, analysis, shown, needs)
@@ -118,13 +118,6 @@ def _stated(runs: xr.Dataset) -> list[str]:
     return [name for name in names if name != "energy_error"] or names
 
 
-def _asked(runs: xr.Dataset, names: list[str]) -> str:
-    """Return the response that the study's title names first, or else the first one."""
-    title = str(runs.attrs.get("title", "")).lower()
-    named = [name for name in names if labels.response(name).lower() in title]
-    return min(named, key=lambda name: title.index(labels.response(name).lower()), default=names[0])
-
-
 def _effects_lead(runs: xr.Dataset) -> bool:
     """Return whether a grid has more values of the impact than of the discretisation."""
     dims = design_dims(runs)
@@ -140,13 +133,13 @@ def _of_sample(
 ) -> tuple[str, list[Entry], str]:
     """Return headline, further entries and note of a sample with sensitivity indices."""
     family, names = families[0], analysed(runs, analysis)
-    sound = [name for name in names if ranking.sound(analysis, name)]
+    sound = [name for name in names if access.is_sound(analysis, name)]
     doubtful = ranking.unusable(runs, analysis)
     note = f"{family.title}, {family.ranked_by(analysis).label}, ± the half-width of the"
     note += f" {access.confidence(analysis)} interval. {shared(runs)}".rstrip()
     if not sound:
         return "No sensitivity index of this study is usable", doubtful, note
-    lead = _asked(runs, sound)
+    lead = access.leading(runs, sound)
     headline = ranking.headline(runs, analysis, family, lead)
     others = [name for name in sound if name != lead]
     findings = ranking.entries(runs, analysis, family, others)
@@ -157,7 +150,7 @@ def _of_grid(
     runs: xr.Dataset, analysis: xr.Dataset, shown: list[str], needs: Needs | None
 ) -> tuple[str, list[Entry], str]:
     """Return headline, further entries and note of a grid: the effects of its parameters."""
-    lead, note, findings = _asked(runs, shown), "", list[Entry]()
+    lead, note, findings = access.leading(runs, shown), "", list[Entry]()
     if is_sample(runs):
         return effects.spread(runs, lead), effects.ranges(runs, [n for n in shown if n != lead]), ""
     if len(shown) > 2 * LINES and not of_function(runs):
@@ -189,16 +182,16 @@ def _verification(stored: xr.Dataset) -> tuple[str, list[Entry]]:
         checks = f"{labels.counted(len(bad), 'check')} did not pass"
         headline = f"{checks}: {failed} of {size} are not within their tolerance"
     closest = sorted(outcomes, key=lambda outcome: -(outcome.worst.ratio if outcome.worst else 0))
-    findings = []
+    findings, used = [], list[str]()
     for outcome in bad or closest:
         worst, text = outcome.worst, outcome.reason or "it compared nothing"
         if worst and not outcome.reason:
             share = labels.percent(worst.ratio) if isfinite(worst.ratio) else "infinitely much"
-            text = f"uses {share} of its tolerance ({worst.quantity}, {worst.where})"
+            used.append(f"{share} of its tolerance")
+            text = f"uses {used[-1]} ({worst.quantity}, {worst.where})"
         findings.append((outcome.title, text))
-    if not bad and findings:
-        headline += f"; the closest call, “{findings[0][0]}”, {findings[0][1]}"
-        findings = findings[1:]
+    if not bad and used:
+        headline += f"; the closest, “{closest[0].title}”, uses {used[0]}"
     return headline, findings
 
 

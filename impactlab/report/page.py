@@ -20,6 +20,7 @@ import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from impactlab.figures import labels
+from impactlab.figures.catalogue import LEAD
 from impactlab.figures.needs import REFINED
 from impactlab.figures.record import listed
 from impactlab.files import identity, replaced
@@ -42,12 +43,14 @@ _PROVENANCE = {
     "failed_runs": "Policy for failed runs",
 }
 _LEADING = (
+    LEAD,
     *(family.figure for family in FAMILIES),
     *(f"{axis}_convergence" for axis in dict.fromkeys(REFINED.values())),
     "parameter_effects",
 )
 """Figures that answer a question, the first of a study before its others."""
-_SCREEN = 1.3  # figures are 8 pt at the width of a paper; on a screen that is small
+_SCREEN, _SCREEN_OF_LEAD = 1.3, 1.6
+"""Enlargement of figures, which are 8 pt at the width of a paper; on a screen that is small."""
 _MOST = 80  # largest number of curve points in a table; bars with names are all listed
 _COLUMNS = {
     "panel": "Panel",
@@ -183,6 +186,7 @@ def pictures(
     figures: dict[str, dict[str, Any]] = {}
     for number, name in enumerate(names, 1):
         entry, svg = entries[name], svgs[name]
+        screen = _SCREEN_OF_LEAD if name == LEAD else _SCREEN
         root = re.search(rb'<svg [^>]*?\bwidth="([\d.]+)pt"', svg)  # as matplotlib writes it
         numbers = folder / f"{name}.csv"
         figures[name] = entry | {
@@ -190,7 +194,7 @@ def pictures(
             "name": name,
             "alt": f"{entry['title']}. {entry['alt']}".strip(),
             "uri": f"data:image/svg+xml;base64,{base64.b64encode(svg).decode('ascii')}",
-            "width": round(float(root.group(1)) * 96 / 72 * _SCREEN) if root else 0,
+            "width": round(float(root.group(1)) * 96 / 72 * screen) if root else 0,
             "data": drawn_data(numbers) if numbers.exists() else None,
         }
     return figures

@@ -15,8 +15,6 @@ from impactlab.verification.functions import FUNCTIONS
 Entry = tuple[str, str]
 """Subject and finding."""
 
-VERDICT = "sensitivity_verdict"
-"""Variable of the verdicts on the indices."""
 _COARSE, _SMALL = 0.02, 0.1
 """Smallest half-width, and smallest share, that are given in whole per cent."""
 _MATTERS = 0.01
@@ -51,8 +49,8 @@ def headline(runs: xr.Dataset, analysis: xr.Dataset, family: Family, response: s
         return f"Not usable: the numerical error exceeds an index of the {name} ({listed})"
     if index.numerical.any():
         error, margin = index.numerical[numbers].max(), index.margins[numbers].min()
-        negligible = "negligible, " if error <= margin else ""
-        text += f"; numerical error is {negligible}{uncertainty(float(error))}"
+        size = uncertainty(float(error))
+        text += f"; numerical error is {f'negligible ({size})' if error <= margin else size}"
     return labels.sentence(text) if text.startswith("the ") else text
 
 
@@ -92,19 +90,13 @@ def unusable(runs: xr.Dataset, analysis: xr.Dataset) -> list[Entry]:
     """Return the responses whose indices are not usable, with the reason; and gaps in the runs."""
     reasons, missing = [], []
     for name in analysed(runs, analysis):
-        verdict, response = access.verdict(analysis, VERDICT, name), labels.response(name)
+        verdict, response = access.verdict(analysis, access.VERDICT, name), labels.response(name)
         if verdict and not verdict.sound:
             reasons.append(f"{response} ({verdict.words})")
         if gaps := int(access.absent(runs, name).sum()):
             missing.append(f"{response} ({gaps:,} of {access.count(runs):,})")
     heads = {"Do not rely on the indices of": reasons, "Missing runs": missing}
     return [(head, ", ".join(texts)) for head, texts in heads.items() if texts]
-
-
-def sound(analysis: xr.Dataset, response: str) -> bool:
-    """Return whether the indices of a response are usable, as far as the analysis judges them."""
-    verdict = access.verdict(analysis, VERDICT, response)
-    return verdict is None or verdict.sound
 
 
 def _index(analysis: xr.Dataset, family: Family, response: str) -> Index:

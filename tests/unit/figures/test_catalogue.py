@@ -14,7 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from impactlab.analysis import distribution
 from impactlab.fem3d.figures.witness import FIGURES
 from impactlab.figures import data, style
-from impactlab.figures.catalogue import CATALOGUE, applicable
+from impactlab.figures.catalogue import CATALOGUE, LEAD, applicable
 from impactlab.figures.distributions import exceedance
 from impactlab.figures.samples import scatter
 from impactlab.variables import RESPONSES
@@ -256,3 +256,19 @@ def _inside(axes, label):
     box = axes.get_window_extent().padded(1)
     x, y = label.get_window_extent().get_points().mean(axis=0)
     return bool(box.x0 <= x <= box.x1 or box.y0 <= y <= box.y1) and label.get_visible()
+
+
+def test_one_panel_of_the_headlines_response_leads(velocity_study, sample_study):
+    runs, analysis = velocity_study
+    runs.attrs["title"] = "The contact duration against the velocity"
+    lead, *_ = applicable(runs, analysis).values()
+    assert lead.name == LEAD
+    assert lead.title.endswith(": contact duration")
+    (panel,) = lead.plot(runs, analysis).axes
+    assert panel.get_title(loc="left") == "Contact duration (ms)"
+    few = runs[["peak_force", "contact_duration", "status"]]
+    assert LEAD not in applicable(few, analysis), "two panels are legible"
+    runs, analysis = sample_study
+    runs.attrs["title"] = "The peak plastic strain"  # whose indices are not usable
+    analysis["sensitivity_verdict"].loc["peak_plastic_strain"] = 1
+    assert applicable(runs, analysis)[LEAD].title == "Sobol indices: peak force"

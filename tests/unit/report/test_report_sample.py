@@ -159,7 +159,7 @@ def test_shares_that_only_the_numerical_error_hides_are_not_called_insignificant
     rows = _table(report(runs, analysis), "Ranks of the parameters by Sobol indices, total order")
     assert rows[1] == ["Peak force", "numerical", "numerical", "noise", "noise"]
     analysis["total_order_numerical"].loc[PEAK] = 1e-6
-    assert answers(runs, analysis)[0].endswith("; numerical error is negligible, below 0.1 %.")
+    assert answers(runs, analysis)[0].endswith("; numerical error is negligible (below 0.1 %).")
 
 
 @pytest.mark.parametrize(

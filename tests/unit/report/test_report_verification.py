@@ -59,7 +59,7 @@ def test_the_verdict_is_at_the_top_and_names_what_failed(told, findings):
 def test_all_passed_is_said_plainly(told, outcomes):
     found = told(packed(outcomes[:1]))
     assert (
-        "All 3 comparisons of 1 check are within their tolerance; the closest call, “A good"
+        "All 3 comparisons of 1 check are within their tolerance; the closest, “A good"
         in found.text
     )
     assert "failed" not in found.text.replace("failed ones first", "").replace("0 failed", "")
