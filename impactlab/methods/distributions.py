@@ -67,7 +67,7 @@ _ABOVE_ONE = requires(
 
 
 class Entry(Stated):
-    """What a sample has of a parameter: a distribution of numbers, words, or one value."""
+    """The entry of a parameter in a sample: a distribution of numbers, words, or one value."""
 
     _name_key = "distribution"
 

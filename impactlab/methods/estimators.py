@@ -1,4 +1,4 @@
-"""What estimators of indices share: a dummy parameter, the bootstrap, and the jackknife.
+"""Shared parts of estimators of indices: a dummy parameter, the bootstrap, and the jackknife.
 
 The bootstrap resamples functions of means by matrix products: the mean over a resample is the mean
 weighted by how often each row was drawn, so that all resamples together are one product of counts

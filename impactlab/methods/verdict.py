@@ -50,7 +50,10 @@ class SensitivityVerdict(Verdict):
         "indices are wrong (see base_correlation)",
     )
     IMPUTED = False, "runs failed, and a surrogate supplied their values (see imputed_share)"
-    MOSTLY_CONSTANT = False, "nine runs in ten share one value: the indices hang on the others"
+    MOSTLY_CONSTANT = (
+        False,
+        "nine runs in ten share one value: the indices depend on the remaining runs",
+    )
     NO_DENSITY = (
         False,
         "a class of a parameter's values holds one value of the response alone: it has no density, "

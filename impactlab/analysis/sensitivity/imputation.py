@@ -53,11 +53,10 @@ def imputed(outputs: Floats, sample: Sample, response: str) -> Imputation:
     if not gaps.any() or sample.settings.get("failed_runs") != "impute":
         return Imputation(outputs)
     if sample.words or correlations(sample.runs):
-        words = f"words ({', '.join(sample.words)})"
+        kind = f"words ({', '.join(sample.words)})" if sample.words else "correlated parameters"
         raise ValueError(
-            f"{sample.study}: no surrogate is fitted over "
-            f"{words if sample.words else 'correlated parameters'}, so it cannot supply values: "
-            "set failed_runs: fail"
+            f"{sample.study}: no surrogate is fitted over {kind}, so it cannot supply "
+            "values: set failed_runs: fail"
         )
     parameters, number = len(sample.parameters), int(np.count_nonzero(~gaps))
     share = float(gaps.mean())

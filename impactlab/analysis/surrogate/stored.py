@@ -283,8 +283,8 @@ def packed(runs: xr.Dataset, analysis: xr.Dataset) -> xr.Dataset | None:
         "lowest": (lowest, {"long_name": "lowest value trained on, SI"}),
         "highest": (highest, {"long_name": "highest value trained on, SI"}),
     }
-    taken = {*dataset.variables, *dataset.dims, *inputs}  # a function may use such names
-    held = {n: array for n, array in runs.coords.items() if array.ndim == 0 and n not in taken}
+    reserved = {*dataset.variables, *dataset.dims, *inputs}  # a function may use such names
+    held = {n: array for n, array in runs.coords.items() if array.ndim == 0 and n not in reserved}
     return (
         dataset.assign({name: ("parameter", *entry) for name, entry in inputs.items()})
         .assign_coords(held)
