@@ -32,7 +32,7 @@ class Size:
 
 
 @dataclass(frozen=True, kw_only=True)
-class BeamModel:
+class FurtherModel:
     """A model of the beam beside those of the kernels.
 
     name: in `beam_model`; label: in figures; solver: name of its solver in designs; trait: of
@@ -67,7 +67,7 @@ class Wing:
 
     commands: Mapping[str, str]
     contents: Mapping[str, str] = field(default_factory=dict)
-    models: tuple[BeamModel, ...] = ()
+    models: tuple[FurtherModel, ...] = ()
 
 
 @cache
@@ -86,7 +86,7 @@ def contents() -> dict[str, str]:
     return {name: command for wing in _wings() for name, command in wing.contents.items()}
 
 
-def models() -> dict[str, BeamModel]:
+def models() -> dict[str, FurtherModel]:
     """Return the models of the beam that wings add, by name."""
     return {model.name: model for wing in _wings() for model in wing.models}
 
@@ -96,7 +96,7 @@ def sizes() -> dict[str, Size]:
     return {size.name: size for model in models().values() for size in model.sizes}
 
 
-def among(names: ArrayLike) -> list[BeamModel]:
+def among(names: ArrayLike) -> list[FurtherModel]:
     """Return the models of wings that are among these values of `beam_model`."""
     import numpy as np  # late: the command line begins without
 

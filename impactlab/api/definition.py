@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from html import escape
 from pathlib import Path
@@ -13,13 +13,11 @@ from impactlab.files import replaced
 from impactlab.methods.sampling import Sampling
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
-from impactlab.model.parameters import PARAMETERS
 from impactlab.model.quantities import Quantity
 from impactlab.study.schema import readers, yaml_file
 from impactlab.study.solvers.own import Function, register
 from impactlab.validation.errors import Problem, StudyError
 from impactlab.validation.stated import plain
-from impactlab.variables import FLAGS, VARIABLES
 
 
 class Study(StudyFolder):
@@ -133,7 +131,6 @@ class Study(StudyFolder):
                 if not isinstance(call, str):
                     with _problems_at(f"responses.{response}"):
                         python[response] = register(response, call)
-            _check_names(python)
             responses = list(responses)
         if function is not None and not isinstance(function, str):
             with _problems_at("function"):
@@ -228,15 +225,6 @@ def _problems_at(key: str) -> Iterator[None]:
         yield
     except ValueError as error:
         raise StudyError(Problem("Study", key, str(error))) from None
-
-
-def _check_names(python: Iterable[str]) -> None:
-    variables = {*PARAMETERS, *VARIABLES, *FLAGS}
-    for name in python:
-        if not name.isidentifier() or name in variables:
-            why = "another variable has it" if name in variables else "use letters, digits and _"
-            problem = Problem("Study", f"responses.{name}", f"cannot name a response: {why}")
-            raise StudyError(problem)
 
 
 def _name(title: Any, name: str | None) -> str:

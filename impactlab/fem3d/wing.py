@@ -1,12 +1,12 @@
 """Additions of this wing to the core: a command, and the model `solid` beside the beam models."""
 
-from impactlab.wings import BeamModel, Size, Wing
+from impactlab.wings import FurtherModel, Size, Wing
 
 SOLID = "solid"
 """The word for this model."""
 _ALONE = "of the 3-D model alone: NaN for models of the beam"
 
-MODEL = BeamModel(
+MODEL = FurtherModel(
     name=SOLID,
     label="3-D FE model",
     solver="witness",

@@ -80,7 +80,7 @@ def physical(runs: xr.Dataset) -> list[str]:
     ]
 
 
-def further_models(runs: xr.Dataset) -> list[wings.BeamModel]:
+def further_models(runs: xr.Dataset) -> list[wings.FurtherModel]:
     """Return the models of wings that some of the runs have."""
     return [] if of_function(runs) else wings.among(runs.coords.get("beam_model", ""))
 

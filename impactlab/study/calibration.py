@@ -192,7 +192,7 @@ def _confirmed(
         posterior["surrogate_error"], 0.1 * posterior["measured_uncertainty"] / 2
     )
     if (ratio > OFF).any():
-        row = int(ratio.values.argmax())
+        row = int(np.asarray(ratio).argmax())
         measurement = measurements[row]
         raise ValueError(
             f"{measurement.quantity}: at the posterior the surrogate is off by {error[row]:.3g} "

@@ -30,7 +30,7 @@ _MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")
 _TAILS = np.array([1e-3, 1 - 1e-3])
 
 
-def further_models(study: ImpactStudy | StudyFile) -> list[wings.BeamModel]:
+def further_models(study: ImpactStudy | StudyFile) -> list[wings.FurtherModel]:
     """Return the models of wings that some of the runs have."""
     return wings.among(values_of(study.sampling, "beam_model", study.impact.beam_model))
 
@@ -190,7 +190,7 @@ def _further_models(file: StudyFile) -> Reasons:
             yield key, f"has no effect without beam_model: {model.name}: take it out"
 
 
-def size_keys(file: StudyFile, model: wings.BeamModel) -> list[str]:
+def size_keys(file: StudyFile, model: wings.FurtherModel) -> list[str]:
     """Return the keys of the sizes of a wing's model that the file states."""
     varied, grid = file.sampling.parameters, file.discretisation[0]
     names = (size.name for size in model.sizes)

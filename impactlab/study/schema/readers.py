@@ -14,7 +14,7 @@ from impactlab.methods import read_sampling
 from impactlab.methods.grid import Grid
 from impactlab.methods.sampling import RandomSample
 from impactlab.methods.sobol import Sobol
-from impactlab.model.parameters import Parameter
+from impactlab.model.parameters import PARAMETERS, Parameter
 from impactlab.model.quantities import si_units
 from impactlab.study.schema.consistency import CHECKS, further_models, limit_reasons, values_of
 from impactlab.study.schema.declarations import (
@@ -29,7 +29,7 @@ from impactlab.study.schema.declarations import (
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source, text_of
 from impactlab.validation.errors import Problem, StudyError, unknown
 from impactlab.validation.fields import Heading, Names, names, validated
-from impactlab.variables import FLAGS, RESPONSES
+from impactlab.variables import FLAGS, RESPONSES, VARIABLES
 from impactlab.verification.functions import FUNCTIONS
 
 
@@ -174,6 +174,12 @@ def _python_responses(responses: Any, path: str) -> tuple[dict[str, str], dict[s
     if not isinstance(responses, dict) or not {*map(str, responses.values())} <= KNOWN.keys():
         raise StudyError(Problem(path, "python_responses", _NOT_KNOWN))
     keys = {str(name): str(key) for name, key in responses.items()}
+    variables = {*PARAMETERS, *VARIABLES, *FLAGS}
+    for name in keys:
+        if not name.isidentifier() or name in variables:
+            why = "another variable has it" if name in variables else "use letters, digits and _"
+            reason = f"cannot name a response: {why}"
+            raise StudyError(Problem(path, f"responses.{name}", reason))
     return keys, {name: KNOWN[key].unit(name) for name, key in keys.items()}
 
 
