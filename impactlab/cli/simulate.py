@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from impactlab import wings
-from impactlab.cli.options import given, new_file
+from impactlab.cli.options import assigned, given, new_file
 
 if TYPE_CHECKING:
     from impactlab.model.discretisation import Discretisation
@@ -38,6 +38,14 @@ def simulate(
     scheme: Annotated[
         str, typer.Option(help="leapfrog, modal (the same from far fewer nodes) or auto.")
     ] = "leapfrog",
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="NAME=VALUE",
+            help="Any parameter of a study, such as beam_depth='20 mm'; can be repeated.",
+        ),
+    ] = None,
     duration: Annotated[str, typer.Option(help="Simulated time, such as '1 ms'.")] = "6 ms",
     output: Annotated[
         Path | None, new_file(".nc", help="Write histories and fields to this netCDF file.")
@@ -49,13 +57,14 @@ def simulate(
         ),
     ] = None,
 ) -> None:
-    """Solve one impact on the paper's beam and print its responses."""
+    """Solve one impact, on the paper's beam or another one, and print its responses."""
     from impactlab.report.console import print_responses
 
     values: dict[str, Value] = {"velocity": given("--velocity", velocity, "m s-1")}
     values |= {"contact": contact} if contact else {}
     values |= {"beam_model": beam_model} if beam_model else {}
     values |= {"nodes": nodes, "points": points, "rule": rule, "scheme": scheme}
+    values |= _settings(settings or [])
     seconds = given("--duration", duration, "s")
     impact, grid = _checked(base, values)
     from impactlab.duration import too_short
@@ -85,6 +94,38 @@ def simulate(
         print(f"Picture: {plot}")
 
 
+def _settings(arguments: list[str]) -> dict[str, Value]:
+    """Return the parameters of `--set`, in SI units. Raises ValueError naming the one at fault."""
+    from impactlab.model.parameters import PARAMETERS
+    from impactlab.model.quantities import whole
+    from impactlab.validation.errors import unknown
+
+    values: dict[str, Value] = {}
+    names = [name for name in PARAMETERS if name not in wings.sizes()]
+    for name, text in assigned(arguments).items():
+        if name not in names:
+            raise ValueError(f"--set {name}: {unknown('parameter', name, names)}")
+        parameter, option = PARAMETERS[name], f"--set {name}"
+        if parameter.choices:
+            if text not in parameter.choices:
+                raise ValueError(f"{option}: {unknown('value', text, parameter.choices)}")
+            values[name] = text
+        elif parameter.is_integer:
+            try:
+                values[name] = whole(text)
+            except ValueError as error:
+                raise ValueError(f"{option} = {text!r}: {error}") from None
+        else:
+            values[name] = given(option, text, parameter.units)
+    return values
+
+
+def _option(name: str) -> str:
+    """Return the option that states a parameter."""
+    options = ("velocity", "contact", "beam_model", "nodes", "points", "rule", "scheme")
+    return f"--{name.replace('_', '-')}" if name in options else f"--set {name}"
+
+
 def _checked(base: str, values: dict[str, Value]) -> tuple[Impact, Discretisation]:
     """Return the base with these values, and log warnings of implausible ones.
 
@@ -100,13 +141,15 @@ def _checked(base: str, values: dict[str, Value]) -> tuple[Impact, Discretisatio
         raise ValueError(f"--base = {base!r}: must be one of {', '.join(BASES)}")
     start = BASES[base](), Discretisation()
     if refused := refusal(start, values):
-        option = f"--{refused.name.replace('_', '-')} = {values[refused.name]!r}"
-        raise ValueError(f"{option}: {refused.reason}")
+        stated = f"{refused.name} of the base {base!r}"
+        if refused.name in values:
+            stated = f"{_option(refused.name)} = {values[refused.name]!r}"
+        raise ValueError(f"{stated}: {refused.reason}")
     case = with_values(*start, values)
     for doubt in implausibilities(numbers(*case)):
         if doubt.impossible:
-            raise ValueError(f"--{doubt.name}: {doubt.reason}")
-        logging.getLogger("impactlab").warning("--%s: %s", doubt.name, doubt.reason)
+            raise ValueError(f"{_option(doubt.name)}: {doubt.reason}")
+        logging.getLogger("impactlab").warning("%s: %s", _option(doubt.name), doubt.reason)
     return case
 
 

@@ -1,6 +1,9 @@
 """One run on the command line, and what a command loads."""
 
+import dataclasses
+
 import pytest
+import xarray as xr
 from command_line import called, succeeded
 from command_line import done as impactlab
 
@@ -80,3 +83,39 @@ def test_what_is_missing_is_named_with_its_reason(tmp_path):
     told = impactlab("simulate", "--nodes", 51, cwd=tmp_path).stdout
     assert "restitution" in told
     assert "missing" not in told.lower()
+
+
+def test_simulate_sets_any_parameter_of_a_study(tmp_path):
+    one = (*ONE, "--duration", "1 ms")
+    options = ("--contact", "mjg", "--nodes", 21)
+    assert (
+        impactlab(*one, *options, cwd=tmp_path).stdout
+        == impactlab(*one, "--set", "contact=mjg", "--set", "nodes=21", cwd=tmp_path).stdout
+    )
+    impactlab(*one, "--set", "beam_depth=20 mm", "--output", "thin.nc", cwd=tmp_path)
+    paper = il.paper_impact()
+    thin = dataclasses.replace(paper, beam=dataclasses.replace(paper.beam, depth=0.02))
+    with pytest.warns(il.TooShortWarning):
+        run = il.simulate(thin, il.Discretisation(nodes=11, points=9), duration="1 ms")
+    with xr.open_dataset(tmp_path / "thin.nc") as stored:
+        assert stored["peak_force"].item() == run["peak_force"].item()
+
+
+@pytest.mark.parametrize(
+    ("setting", "message"),
+    [
+        ("beam_dept=20 mm", "did you mean 'beam_depth'?"),
+        ("contact=herz", "did you mean 'hertz'?"),
+        ("nodes=20.5", "--set nodes = '20.5': expected a whole number"),
+        ("beam_depth=20 kg", "--set beam_depth = '20 kg'"),
+        ("beam_depth=-1 mm", "--set beam_depth = -0.001: must be above zero"),
+        ("beam_depth", "expected NAME=VALUE"),
+        ("beam_span=1 mm", "beam_depth of the base 'paper': must be below the span"),
+        ("element_size=1 mm", "--set element_size: unknown parameter"),
+    ],
+)
+def test_a_setting_that_cannot_be_is_refused_with_its_name(tmp_path, setting, message):
+    ended = called(*ONE, "--set", setting, cwd=tmp_path)
+    assert ended.returncode in (1, 2)
+    assert message in ended.stderr
+    assert "Traceback" not in ended.stderr
