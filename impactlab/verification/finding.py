@@ -85,13 +85,13 @@ class Comparisons(list[Comparison]):
         """Add the relative differences of responses of a run from those expected, by variable."""
         for name, value in expected.items():
             ours, units = run[name].item(), run[name].attrs["units"]
-            self.relative(name.replace("_", " "), units, ours, value, tolerance)
+            self.relative(words(name), units, ours, value, tolerance)
         return self
 
     def histories(self, run: xr.Dataset, expected: Mapping[str, Floats], tolerance: float) -> Self:
         """Add the differences of histories of a run from those expected, by variable; see curve."""
         for name, values in expected.items():
-            label, units = f"history of {name.replace('_', ' ')}", run[name].attrs["units"]
+            label, units = f"history of {words(name)}", run[name].attrs["units"]
             self.curve(label, units, run[name].values, values, tolerance)
         return self
 
@@ -113,6 +113,11 @@ class Comparisons(list[Comparison]):
         """Add the one nearest to failing of each column of rows of alike comparisons."""
         self.extend(map(worst, zip(*rows, strict=True)))
         return self
+
+
+def words(name: str) -> str:
+    """Return the name of a variable in words."""
+    return name.replace("midspan", "mid-span").replace("_", " ")
 
 
 def rms_error(ours: Floats, independent: Floats) -> float:

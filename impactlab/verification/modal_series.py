@@ -22,17 +22,14 @@ from impactlab.verification.finding import (
     Finding,
     check,
     rms_error,
+    words,
 )
 from impactlab.verification.solutions import hertz
 from impactlab.verification.solutions.beam_modes import odd_modes
 from impactlab.verification.solutions.modal import ModalSolution, solve, solve_timoshenko
 
-HISTORIES = {
-    "contact_force": ("contact force", "N"),
-    "midspan_deflection": ("mid-span deflection", "m"),
-    "midspan_curvature": ("mid-span curvature", "m-1"),
-}
-"""The compared histories: (name, units)."""
+HISTORIES = {"contact_force": "N", "midspan_deflection": "m", "midspan_curvature": "m-1"}
+"""The compared histories, and their units."""
 
 GridKey = tuple[str, int]  # scheme and nodes
 
@@ -116,9 +113,9 @@ def _compare(
     comparisons += _histories(where, grids, finest, series)
     comparisons.at(where)
     pair = [runs[grids.scheme, nodes] for nodes in grids.pair]
-    for (name, (quantity, _)), order in zip(HISTORIES.items(), grids.orders, strict=True):
+    for name, order in zip(HISTORIES, grids.orders, strict=True):
         coarse, fine = (error(name, series, run) for run in pair)
-        label, observed = f"order of convergence of {quantity}", float(np.log2(coarse / fine))
+        label, observed = f"order of convergence of {words(name)}", float(np.log2(coarse / fine))
         comparisons.absolute(label, "1", observed, order, 0.2)
     return comparisons
 
@@ -129,8 +126,8 @@ def _histories(
     nodes, time = run.nodes.item(), run.time.values
     comparisons = Comparisons(f"{where}, {nodes} nodes")
     finer = (grids.middle / nodes) ** 2.0
-    for (name, (quantity, units)), limit in zip(HISTORIES.items(), grids.tolerances, strict=True):
-        label, ours = f"history of {quantity}", run[name].values
+    for (name, units), limit in zip(HISTORIES.items(), grids.tolerances, strict=True):
+        label, ours = f"history of {words(name)}", run[name].values
         if grids is MODAL and name == "midspan_curvature":
             label += ", the modes left out added"
             modes = odd_modes(series.modes.beam, nodes // 2)
@@ -152,7 +149,7 @@ def _panels(
 ) -> list[CurvePanel]:
     """Draw the histories, and how their errors fall."""
     panels, errors, series = [], [], next(iter(solutions.values()))
-    for name, (quantity, units) in HISTORIES.items():
+    for name, units in HISTORIES.items():
         curves = []
         for grids in schemes:
             run = runs[grids.scheme, grids.middle]
@@ -160,10 +157,10 @@ def _panels(
             curves.append(Curve(f"{grids.scheme}, {grids.middle} nodes", time, run[name].values))
             nodes = np.array(grids.nodes, dtype=np.float64)
             sizes = [error(name, series, runs[grids.scheme, n]) for n in grids.nodes]
-            errors.append(Curve(f"{grids.scheme}: {quantity}", nodes, np.array(sizes)))
+            errors.append(Curve(f"{grids.scheme}: {words(name)}", nodes, np.array(sizes)))
         for label, other in solutions.items():
             curves.append(Curve(label, time, other.at(name, time), independent=True))
-        panels.append(CurvePanel(title, ("time", "s"), (quantity, units), curves))
+        panels.append(CurvePanel(title, ("time", "s"), (words(name), units), curves))
     first = errors[0]
     slope = Curve("second order", first.x, first.y[0] * (first.x[0] / first.x) ** 2.0, True)
     axes = ("nodes", "1"), ("error (root mean square over the largest value)", "1")

@@ -106,33 +106,30 @@ def static_deflection() -> Finding:
         positions, weights = quadrature.rule(rule, points)
         # The rule's second moment of area over the exact one.
         force = run.contact_force.values / float(1.5 * np.sum(weights * positions**2))
-        expected = force * bending.static_deflection(beam, 1.0)
-        where = f"the paper's beam, {points} points ({rule})"
-        comparisons += _compare_bending(where, run, beam, force, expected)
-        curves = [
-            Curve("solver", run.time.values, run.midspan_deflection.values),
-            Curve("F L³/(48 EI)", run.time.values, expected, independent=True),
-        ]
-        panels.append(CurvePanel(where, ("time", "s"), ("deflection at mid-span", "m"), curves))
+        expected = _bent(beam, force, bending.static_deflection(beam, 1.0))
+        comparisons.at(f"the paper's beam, {points} points ({rule})").histories(run, expected, 1e-3)
+        if not panels:
+            curves = [
+                Curve("solver", run.time.values, run.midspan_deflection.values),
+                Curve("F L³/(48 EI)", run.time.values, expected["midspan_deflection"], True),
+            ]
+            axes = ("time", "s"), ("deflection at mid-span", "m")
+            panels = [CurvePanel(comparisons.where, *axes, curves)]
 
     beam = replace(beam, span=0.25 * beam.span)
     impact = _slow_impact(beam, mass=8e4, velocity=0.24, softness=50e-3)
     grid = Discretisation(nodes=101, points=3)
     run = run_dataset(replace(impact, beam_model="timoshenko"), grid, duration=0.1)
-    force = run.contact_force.values
     softness = bending.static_deflection(beam, 1.0) + beam_modes.shear_deflection(beam, 1.0)
-    expected = force * softness
-    where = "a stubby Timoshenko beam, 3 points (lobatto)"
-    return Finding([*comparisons, *_compare_bending(where, run, beam, force, expected)], panels[:1])
+    expected = _bent(beam, run.contact_force.values, softness)
+    comparisons.at("a stubby Timoshenko beam, 3 points (lobatto)").histories(run, expected, 1e-3)
+    return Finding(comparisons, panels)
 
 
-def _compare_bending(
-    where: str, run: xr.Dataset, beam: Beam, force: Floats, deflection: Floats
-) -> Comparisons:
-    w, kappa = run.midspan_deflection.values, run.midspan_curvature.values
+def _bent(beam: Beam, force: Floats, softness: float) -> dict[str, Floats]:
+    """Return the histories of a beam at rest under a force (N) at mid-span; softness in m/N."""
     curvature = -force * beam.span / (4.0 * beam.bending_stiffness)
-    comparisons = Comparisons(where).curve("deflection at mid-span", "m", w, deflection, 1e-3)
-    return comparisons.curve("curvature at mid-span", "m-1", kappa, curvature, 1e-3)
+    return {"midspan_deflection": force * softness, "midspan_curvature": curvature}
 
 
 def _slow_impact(beam: Beam, mass: float, velocity: float, softness: float) -> Impact:

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 from numpy.typing import NDArray
 
+from impactlab.fem3d.solver.evaluation import PLASTIC_ZONE_STRAIN
 from impactlab.fem3d.solver.mesh import BEAM, FACES
 from impactlab.figures import labels, record, scales, style
 from impactlab.figures.draw import draw
@@ -107,13 +108,12 @@ def mesh(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     return figure
 
 
-THRESHOLD = 1e-5  # PEEQ from which on an element counts as plastic
 _STRAIN = "equivalent_plastic_strain"
 
 
 def _strain_sentences(solid: xr.Dataset, beams: xr.Dataset) -> tuple[str]:
     polygons, elements = faces(solid, 1)
-    plastic = solid[_STRAIN].values[elements] >= THRESHOLD
+    plastic = solid[_STRAIN].values[elements] >= PLASTIC_ZONE_STRAIN
     reach = (
         f"In this plane it reaches {labels.number(float(polygons[plastic, :, 0].max()), 3)} mm "
         f"from mid-span and {labels.number(-float(polygons[plastic, :, 1].min()), 3)} mm deep. "
@@ -123,7 +123,7 @@ def _strain_sentences(solid: xr.Dataset, beams: xr.Dataset) -> tuple[str]:
     return (
         "Equivalent plastic strain (PEEQ) of the elements in the plane of symmetry along the beam, "
         "means over each, at the end of the run; grey: below "
-        f"{labels.number(100 * THRESHOLD)} %. {reach}The largest strain grows with finer elements.",
+        f"{labels.number(100 * PLASTIC_ZONE_STRAIN)} %. {reach}The largest strain grows with finer elements.",
     )
 
 
@@ -133,7 +133,7 @@ def plastic_strain(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     figure, (ax,) = style.panels(1, columns=1, height=68)
     polygons, elements = faces(solid, 1)
     strain = solid[_STRAIN].values[elements]
-    plastic = strain >= THRESHOLD
+    plastic = strain >= PLASTIC_ZONE_STRAIN
     _draw_faces(ax, polygons[~plastic], facecolors="0.94", edgecolors="0.75", linewidths=0.3)
     extent = np.abs(polygons[plastic]).max(initial=0.0)  # at most half the beam's depth
     extent = min(float(extent), 0.5e3 * float(solid["beam_depth"]))
