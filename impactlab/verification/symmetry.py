@@ -17,6 +17,7 @@ from impactlab.simulate import case_table, fibre_section, run_dataset
 from impactlab.solver.beam import make_beam, move_virgin, strike
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import CONTACT, force, make_pair
+from impactlab.solver.contact.switch import DAMPED
 from impactlab.solver.modes import make_modes, move_modes
 from impactlab.solver.stability import discretise
 from impactlab.types import Floats
@@ -98,7 +99,7 @@ def similarity() -> Finding:
     """Compare every response, history and profile of the scaled impact with the original.
 
     The independent part is dimensional analysis: a constant with a unit, hidden in the code, would
-    break it.
+    break it. A damper's (s/m) is the metal's, so such laws are compared where velocities stay.
     """
     comparisons = Comparisons()
     panels: list[CurvePanel] = []
@@ -107,7 +108,10 @@ def similarity() -> Finding:
         for contact in LAWS if scheme == "leapfrog" else ("stronge",):
             impact = _yielding(contact)
             run = UNSCALED.simulate(impact, grid)
+            damped = LAWS.index(contact) in DAMPED
             for name, scale in {"the impact": UNSCALED, **SCALES}.items():
+                if damped and not math.isclose(scale.factor("m s-1"), 1.0):
+                    continue
                 scaled, where = scale.simulate(impact, grid), f"{scheme}, {contact}, {name}"
                 if scale is not UNSCALED:
                     comparisons += _compare(where, run, scaled, scale)

@@ -123,7 +123,8 @@ def _strain_sentences(solid: xr.Dataset, beams: xr.Dataset) -> tuple[str]:
     return (
         "Equivalent plastic strain (PEEQ) of the elements in the plane of symmetry along the beam, "
         "means over each, at the end of the run; grey: below "
-        f"{labels.number(100 * PLASTIC_ZONE_STRAIN)} %. {reach}The largest strain grows with finer elements.",
+        f"{labels.number(100 * PLASTIC_ZONE_STRAIN)} %. {reach}The largest strain grows with finer "
+        "elements.",
     )
 
 
