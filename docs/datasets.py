@@ -154,8 +154,9 @@ def _analyses(studies: list[xr.Dataset], samples: Mapping[str, xr.Dataset]) -> I
                 yield f"#### {method}\n"
                 yield from _table(module.analysis(runs).data_vars)
         else:
-            runs = next(filter(module.applies, studies))
-            yield from _table(module.analysis(runs).data_vars)
+            plans = ((runs, (runs.attrs.get("method"), runs.sizes, True)) for runs in studies)
+            analyses = (module.analysis(runs) for runs, plan in plans if entry.possible(*plan))
+            yield from _table(next(filter(len, analyses)).data_vars)
 
 
 def _section(title: str, dataset: xr.Dataset, note: str = "") -> Iterator[str]:
