@@ -44,7 +44,7 @@ class DistributionVerdict(Verdict):
 
 def drawn_outputs(runs: xr.Dataset, response: str) -> Floats:
     """Return a response of the draws, (draws,), in SI units, NaN where it is missing."""
-    sample = Sample.of(runs.assign_attrs(responses=response))  # whatever else they lack
+    sample = Sample.of(runs)
     return np.asarray(usable(sample.runs, response).values[0][independent_runs(sample)])
 
 

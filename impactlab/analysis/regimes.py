@@ -34,7 +34,7 @@ def of_runs(runs: xr.Dataset, response: str) -> Floats:
     needed = {"method", "varied"} | ({method.blocks} if method and method.blocks else set())
     if "run" not in runs.dims or not needed <= runs.attrs.keys():
         return np.array([])
-    sample = Sample.of(runs.assign_attrs(responses=response))  # whatever else they lack
+    sample = Sample.of(runs)
     return of_sample(sample, usable(sample.runs, response).values[0])
 
 

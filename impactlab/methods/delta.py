@@ -109,7 +109,7 @@ def deltas(
     are the classes. NaN where a class does not vary.
     """
     density = _density(outputs, np.zeros(1, int), places, width)
-    equal = _starts(len(outputs), classes)
+    equal = np.linspace(0, len(outputs), classes + 1)[:-1].astype(int)  # where classes begin
     distances = []
     for column, of_words in zip(inputs.T, categorical, strict=True):
         order = np.argsort(column, kind="stable")
@@ -135,11 +135,6 @@ def first_orders(inputs: Floats, outputs: Floats) -> tuple[Floats, Floats]:
     )
     variance = same + 2 * np.maximum(next_one - second, 0.0)
     return values, np.sqrt(variance / len(outputs))
-
-
-def _starts(runs: int, classes: int) -> npt.NDArray[np.intp]:
-    """Return where classes of equal size begin among the runs in the order of a parameter."""
-    return np.linspace(0, runs, classes + 1)[:-1].astype(int)
 
 
 def _density(
