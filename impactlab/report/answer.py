@@ -18,6 +18,7 @@ from impactlab.methods.record import Family
 from impactlab.model.parameters import PARAMETERS
 from impactlab.report import effects, measured, ranking
 from impactlab.report.distribution import limit_entries
+from impactlab.report.page import Entry
 from impactlab.report.regimes import regime_entries
 from impactlab.report.sensitivity import history_entries, shared, uncertainty
 from impactlab.variables import of_function
@@ -37,9 +38,6 @@ _MINOR = (
     "remote_plastic_strain",
 )
 """Responses that long answers leave to the tables."""
-
-Entry = tuple[str, str]
-"""Subject and finding."""
 
 
 def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:

@@ -12,7 +12,7 @@ from impactlab.figures import access, labels
 from impactlab.figures.distributions import exceedance, limited, spread_evenly
 from impactlab.figures.labels import Display
 from impactlab.methods.runs import correlations
-from impactlab.report.page import Cell, Row, Section, Table
+from impactlab.report.page import Cell, Entry, Row, Section, Table
 
 PERCENTILES = {"5th percentile": 0.05, "Median": 0.5, "95th percentile": 0.95}
 _COUNTS = ("number_of_draws", "missing_draws", "exceeding_draws")
@@ -36,7 +36,7 @@ _READING = (
 _SHARED = " Of correlated parameters each distance includes what one shares with the others."
 
 
-def limit_entries(runs: xr.Dataset, analysis: xr.Dataset) -> list[tuple[str, str]]:
+def limit_entries(runs: xr.Dataset, analysis: xr.Dataset) -> list[Entry]:
     """Return one entry per limit: its probability, and the parameters that lead beyond it."""
     entries = []
     for name in limited(runs, analysis):

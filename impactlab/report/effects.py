@@ -14,9 +14,7 @@ from impactlab.figures import access, labels
 from impactlab.figures.access import design_dims, physical, usable
 from impactlab.figures.labels import display
 from impactlab.report.cautions import beside
-
-Entry = tuple[str, str]
-"""Subject and finding."""
+from impactlab.report.page import Entry
 
 _NONE = 1e-3
 """Largest change, relative to the largest magnitude, that counts as no effect."""

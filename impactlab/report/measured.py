@@ -10,7 +10,7 @@ import xarray as xr
 
 from impactlab.analysis.measurements import Agreement
 from impactlab.figures import labels
-from impactlab.report.page import Cell, Row, Section, Table
+from impactlab.report.page import Cell, Entry, Row, Section, Table
 from impactlab.variables import attributes
 
 _LEAD = (
@@ -21,7 +21,7 @@ _LEAD = (
 _MOST = 200  # largest number of rows of the table; those that are incompatible come first
 
 
-def entries(analysis: xr.Dataset) -> list[tuple[str, str]]:
+def entries(analysis: xr.Dataset) -> list[Entry]:
     """Return the line of the answer: the verdicts, and the worst differences; [] without any."""
     if "compared_verdict" not in analysis:
         return []

@@ -74,6 +74,10 @@ Row = Sequence[Cell | str]
 """Cells, of which those with plain text alone need no record; the first one heads the row."""
 
 
+Entry = tuple[str, str]
+"""Subject and finding of a line of an answer."""
+
+
 @dataclass(frozen=True)
 class Table:
     """A caption, the column heads, and rows as wide as the head.

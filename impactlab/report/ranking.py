@@ -9,11 +9,9 @@ from impactlab.figures import access, labels, measures
 from impactlab.figures.measures import MORRIS, SOBOL, Index, analysed
 from impactlab.methods.record import Family
 from impactlab.methods.runs import correlations
+from impactlab.report.page import Entry
 from impactlab.report.sensitivity import in_units, uncertainty, with_margin
 from impactlab.verification.functions import FUNCTIONS
-
-Entry = tuple[str, str]
-"""Subject and finding."""
 
 _COARSE, _SMALL = 0.02, 0.1
 """Smallest half-width, and smallest share, that are given in whole per cent."""

@@ -13,10 +13,11 @@ from impactlab.figures.labels import display
 from impactlab.methods import independent_runs
 from impactlab.methods.runs import Sample
 from impactlab.report.distribution import leading
+from impactlab.report.page import Entry
 from impactlab.types import Floats
 
 
-def regime_entries(runs: xr.Dataset) -> list[tuple[str, str]]:
+def regime_entries(runs: xr.Dataset) -> list[Entry]:
     """Return one entry per response of a sample in several regimes: where draws lie, and why."""
     entries = []
     for name in responses(runs):
