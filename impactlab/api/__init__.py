@@ -1,1 +1,1 @@
-"""What `import impactlab as il` adds to the functions behind the commands."""
+"""The objects of `import impactlab as il` beside the functions behind the commands."""

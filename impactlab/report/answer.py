@@ -63,7 +63,7 @@ def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
     >>> runs = study.run(workers=1)
     >>> for line in il.answers(runs, il.analyse(runs)):
     ...     print(line)
-    The x1 (... %) and the x2 (... %) cause most of the scatter of the value.
+    x1 (... %), x2 (... %) and x3 (... %) cause most of the scatter of the value.
     """
     if analysis is None and runs.attrs.get("content") != "findings":
         analysis = analyse(runs)

@@ -106,7 +106,7 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset, lead: str, shown: list[str])
 
 
 def _finite(runs: xr.Dataset, name: str) -> xr.DataArray:
-    """Return the finite values of a response, round-off as zero."""
+    """Return a response without infinite values, and with zero for round-off."""
     values = usable(runs, name)
     finite = values.where(np.isfinite(values))
     return finite.where(~(abs(finite) < _ROUND_OFF * abs(finite).max()), 0.0)
@@ -275,7 +275,7 @@ def _comparison(runs: xr.Dataset, dim: str) -> str:
 
 
 def _contrast(runs: xr.Dataset, name: str, dim: str) -> str:
-    """Return by how much a response differs between the first and last value of a parameter."""
+    """Return the change of a response from the first to the last value of a parameter."""
     values, is_number = _finite(runs, name), runs[dim].dtype.kind in "if"
     if not is_number and values.sizes[dim] > 2:
         return _by_word(runs, values, dim)
