@@ -113,12 +113,9 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
     return fly
 
 
-def _time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:  # noqa: C901 one loop
-    """Return the time loop of a model of the beam; extended: see _kernel."""
-    _, move_beam, mid_curvature, beam_energy, _, spread, flight_stride, flight, _ = model[:9]
-    sag, beneath, lift, moments = model.sag, model.beneath, model.lift, model.moments
-    fly = None if flight is None else _leaps(flight)
-    force = damped_force if extended else contact_force
+def _audit(model: BeamModel) -> Callable[..., float]:
+    """Return the audit of the energy of a model of the beam."""
+    beam_energy, fast = model.energy, model.flight is not None
 
     @inlined
     def imbalance(
@@ -141,11 +138,67 @@ def _time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:  # noqa:
         start = 0.5 * case.sphere_mass * case.velocity**2
         falling = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
         in_beam = beam_energy(state, now, F, u_mid) + excess
-        kept, lost = contact_history.energies(contact, state.pair, approach, flight is not None)
+        kept, lost = contact_history.energies(contact, state.pair, approach, fast)
         return abs(falling + in_beam + kept + lost - start) / start
 
+    return imbalance
+
+
+def _contact(model: BeamModel, extended: bool) -> Callable[..., tuple[float, float, float]]:
+    """Return the contact of a sphere with a model of the beam; extended: see _kernel."""
+    mid_curvature, sag, beneath = model.curvature, model.sag, model.beneath
+    lift, moments = model.lift, model.moments
+    force = damped_force if extended else contact_force
+
     @inlined
-    def march(  # noqa: C901 as above
+    def touch(
+        case: Record,
+        state: State,
+        contact: Record,
+        events: Record,
+        now: int,
+        delta: float,
+        t: float,
+    ) -> tuple[float, float, float]:
+        """Return the contact force (N), the approach and the indentation (m) at time t.
+
+        delta (m): how much further the sphere has moved than the beam under it.
+        """
+        pair, section, grid, _, plastic = state[:5]
+        if sag is not None:
+            delta -= sag(state)
+        approach = delta
+        if pair.bending != 0.0:
+            contact.shift_before = contact.shift
+            elastic = plastic.M_0[grid.mid] / section.stiffness - mid_curvature(state, now)
+            contact.shift = pair.bending * elastic
+            approach = delta - contact.shift
+        if moments is not None and pair.prestress[0] > 0.0:
+            along, across = moments(state, now)
+            contact.stress_along = case.stress_per_moment * along
+            contact.stress_across = case.stress_per_moment * across
+            F = prestressed_force(contact, events, pair, approach, t, grid.dt)
+        else:
+            F = force(contact, events, pair, approach, t, grid.dt)
+        if beneath is not None and lift is not None:
+            delta += lift(state, contact, F) - beneath(state, now, F)
+        if pair.bending != 0.0:
+            contact.largest = max(contact.largest, delta)
+            grown = contact.shift - contact.shift_before
+            contact.bending_work += 0.5 * (F + events.F) * grown
+        return F, approach, delta
+
+    return touch
+
+
+def _time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
+    """Return the time loop of a model of the beam; extended: see _kernel."""
+    move_beam, mid_curvature, spread = model.step, model.curvature, model.spread
+    flight_stride, fly = model.flight_stride, None if model.flight is None else _leaps(model.flight)
+    touch, imbalance = _contact(model, extended), _audit(model)
+
+    @inlined
+    def march(  # noqa: C901 one loop
         case: Record, state: State, contact: Record, events: Record, samples: Array, steps: int
     ) -> int:
         """March from first touch to the end; return which row of beam.w is the last, or -1.
@@ -165,33 +218,10 @@ def _time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:  # noqa:
         contact.n = 1.5
         event_tracker.start(events)
         while step <= steps:
-            w_mid, u_mid = w[now, mid], u[mid]
-            delta = w_s - w_mid - ahead
-            if sag is not None:
-                delta -= sag(state)
-            approach = delta
-            if pair.bending != 0.0:
-                contact.shift_before = contact.shift
-                kappa = mid_curvature(state, now)
-                contact.shift = pair.bending * (plastic.M_0[mid] / section.stiffness - kappa)
-                approach = delta - contact.shift
-            if moments is not None and pair.prestress[0] > 0.0:
-                along, across = moments(state, now)
-                contact.stress_along = case.stress_per_moment * along
-                contact.stress_across = case.stress_per_moment * across
-                F = prestressed_force(contact, events, pair, approach, step * dt, dt)
-            else:
-                F = force(contact, events, pair, approach, step * dt, dt)
-            if beneath is not None and lift is not None:
-                delta += lift(state, contact, F) - beneath(state, now, F)
-            if pair.bending != 0.0:
-                contact.largest = max(contact.largest, delta)
-                grown = contact.shift - contact.shift_before
-                contact.bending_work += 0.5 * (F + events.F) * grown
+            t, w_mid, u_mid = step * dt, w[now, mid], u[mid]
+            F, approach, delta = touch(case, state, contact, events, now, w_s - w_mid - ahead, t)
             v_after = v_s + dt * (case.gravity - F * per_mass)
-            event_tracker.update_events(
-                events, approach, contact.delta_r, w_mid, F, v_s, step * dt, dt
-            )
+            event_tracker.update_events(events, approach, contact.delta_r, w_mid, F, v_s, t, dt)
             if samples.shape[1] > 0:
                 before, here = here, (F, w_mid, mid_curvature(state, now), w_s, delta)
                 _sample(samples, step, steps, before, here)
