@@ -23,10 +23,10 @@ from .methods.sobol import Sobol as Sobol
 from .model.discretisation import Discretisation as Discretisation
 from .model.impact import Beam as Beam
 from .model.impact import Impact as Impact
-from .model.impact import Material as Material
 from .model.impact import Sphere as Sphere
 from .model.impact import corrected_impact as corrected_impact
 from .model.impact import paper_impact as paper_impact
+from .model.material import Material as Material
 from .model.plausibility import ImplausibleWarning as ImplausibleWarning
 from .model.plausibility import TooShortWarning as TooShortWarning
 from .report.answer import answers as answers

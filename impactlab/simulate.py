@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import itertools
 import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from impactlab import wings
 from impactlab.duration import too_short
 from impactlab.jit import precompile
-from impactlab.model.checks import column, integer, positive
-from impactlab.model.contact_compliance import case_fields
+from impactlab.model.case_table import case_table
+from impactlab.model.checks import integer, positive
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Beam, Impact
-from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
+from impactlab.model.impact import Impact
+from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.model.plausibility import (
     ImplausibleWarning,
     TooShortWarning,
@@ -28,14 +27,13 @@ from impactlab.model.plausibility import (
 from impactlab.model.quantities import Quantity, as_text, in_si
 from impactlab.model.quantities import duration as duration_of
 from impactlab.model.section import fibre_table, integration_rule
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LOADS, LUMPED_MODELS, SCHEMES
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, SCHEMES
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.jit import FOLDER
-from impactlab.solver.leapfrog import is_extended, kernel_of
+from impactlab.solver.kernels import is_extended, kernel_of
 from impactlab.solver.outputs import blank
 from impactlab.solver.section import FibreSection, make_section
-from impactlab.solver.types import CASE
 from impactlab.variables import (
     HISTORIES,
     MARKED,
@@ -51,7 +49,8 @@ if TYPE_CHECKING:
 
 _COMPILE = """
 import impactlab as il
-from impactlab.simulate import case_table, solve
+from impactlab.model.case_table import case_table
+from impactlab.simulate import solve
 grid = il.Discretisation(nodes=5, scheme={scheme!r})
 varied = {{"beam_model": [{model!r}], "contact": [{law!r}]}}
 solve(case_table(il.paper_impact(), grid, duration=1e-6, varied=varied))
@@ -270,53 +269,6 @@ def _warn_too_short(cases: Any, status: Any) -> None:
         warnings.warn(message, TooShortWarning, stacklevel=3)
 
 
-def case_table(
-    impact: Impact,
-    discretisation: Discretisation,
-    *,
-    duration: float,
-    varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]] | None = None,
-    first_run: int = 0,
-) -> np.ndarray[Any, Any]:
-    """Return the kernels' table of cases, one record (solver.types.CASE) per run; check each run.
-
-    first_run: the number that messages give the first one. Raises ValueError naming the run and its
-    field when the model refuses a value.
-    """
-    positive("simulate", "duration", duration)
-    varied = varied or {}
-    for name, values in varied.items():
-        if isinstance(values, str) or np.ndim(values) != 1:
-            raise ValueError(f"varied: {name} = {values!r}: must be a list with one value per run")
-    lengths = {len(values) for values in varied.values()}
-    if len(lengths) > 1:
-        raise ValueError(f"varied: every parameter needs one value per run, got lengths {lengths}")
-    models = map(str, varied.get("beam_model", [impact.beam_model]))
-    discretisation = discretisation.resolved(models)
-    try:
-        columns = {name: column(values) for name, values in varied.items()}
-        many = with_values(impact, discretisation, columns)
-    except (TypeError, ValueError):  # some run may be wrong, or right in a way of its own
-        each = _one_by_one(impact, discretisation, varied, first_run)
-        tables = [np.zeros(0, CASE), *(_table(*run, duration, 1) for run in each)]
-        cases = np.concatenate(tables)
-    else:
-        cases = _table(*many, duration, lengths.pop() if lengths else 1)
-    lumped = BEAM_MODELS.index(LUMPED_MODELS[0])
-    for name, words, first, only, reason in (
-        ("scheme", SCHEMES, len(BENDING_MODELS), "leapfrog", ""),
-        ("load", LOADS, lumped, "point", ", because it moves as one mass"),
-    ):
-        refused = (cases["beam_model"] >= first) & (cases[name] != words.index(only))
-        for at in np.flatnonzero(refused)[:1]:
-            model, word = BEAM_MODELS[cases[at].beam_model], words[cases[at][name]]
-            run = f"run {first_run + at}: " * bool(varied)
-            raise ValueError(
-                f"{run}{name} = {word!r}: beam_model = {model!r} has {only!r} alone{reason}"
-            )
-    return cases
-
-
 def solve(
     cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = False
 ) -> dict[str, np.ndarray[Any, Any]]:
@@ -363,7 +315,7 @@ def compile_kernels(
 ) -> Path | None:
     """Compile the kernels of these models and schemes side by side, unless they are compiled.
 
-    extended: whether those with what leapfrog.is_extended names, those without, or both. Returns
+    extended: whether those with what kernels.is_extended names, those without, or both. Returns
     the folder of the compiled kernels, None where they cannot be kept.
     """
     programs = {}
@@ -412,58 +364,6 @@ def fibre_section(case: Any) -> FibreSection:
     (fibres,) = fibre_table(np.atleast_1d(case))
     section: FibreSection = make_section(case, fibres)
     return section
-
-
-def _one_by_one(
-    impact: Impact,
-    discretisation: Discretisation,
-    varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]],
-    first_run: int,
-) -> Iterator[tuple[Impact, Discretisation]]:
-    """Yield the impact of every run. Raises ValueError naming the first one the model refuses."""
-    for run, row in enumerate(zip(*varied.values(), strict=True), first_run):
-        # NumPy's scalars as the Python values that the model checks
-        plain = (value.item() if isinstance(value, np.generic) else value for value in row)
-        values: dict[str, Any] = dict(zip(varied, plain, strict=True))
-        try:
-            yield with_values(impact, discretisation, values)
-        except ValueError as error:
-            stated = ", ".join(f"{name} = {value!r}" for name, value in values.items())
-            several = f" ({stated})" * (len(values) > 1)
-            raise ValueError(f"run {run}{several}: {error}") from None
-
-
-def _table(
-    impact: Impact, discretisation: Discretisation, duration: float, runs: int
-) -> np.ndarray[Any, Any]:
-    """Return the records of as many runs as the impact's columns are long, or one for all."""
-    for model in wings.among(impact.beam_model):
-        reason = f"is no model of the kernels: {model.advice}"
-        raise ValueError(f"beam_model = {model.name!r}: {reason}")
-    discretisation = discretisation.resolved(np.unique(impact.beam_model).tolist())
-    values: dict[str, Any] = {**flatten(impact, discretisation), "duration": duration}
-    values["sphere_mass"] = impact.sphere.total_mass
-    for name, entry in PARAMETERS.items():
-        if entry.choices:
-            numbered = enumerate(entry.choices)
-            values[name] = sum(at * (values[name] == word) for at, word in numbered)
-    values |= _section_fields(impact.beam) | case_fields(impact)
-    cases = np.zeros(runs, dtype=CASE)
-    for name in CASE.names or ():
-        cases[name] = values[name]
-    return cases
-
-
-def _section_fields(beam: Beam) -> dict[str, Any]:
-    """Return the fields of solver.types.CASE that hold properties of the section."""
-    section, metal = beam.section, beam.material
-    return {
-        "mass_per_length": beam.mass_per_length,
-        "rotary_inertia": section.rotary_inertia(metal.density),
-        "shear_stiffness": beam.shear_stiffness,
-        "plate_stiffness": section.plate_stiffness(metal.youngs_modulus, metal.poissons_ratio),
-        "stress_per_moment": section.stress_per_moment,
-    }
 
 
 def _depth(lower: np.ndarray[Any, Any], sign: float, points: int) -> np.ndarray[Any, Any]:

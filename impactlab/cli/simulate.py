@@ -68,8 +68,9 @@ def simulate(
     seconds = given("--duration", duration, "s")
     impact, grid = _checked(base, values)
     from impactlab.duration import too_short
-    from impactlab.simulate import case_table, solve
+    from impactlab.model.case_table import case_table
     from impactlab.simulate import simulate as solve_one
+    from impactlab.simulate import solve
 
     cases = case_table(impact, grid, duration=seconds)
     answers: Any

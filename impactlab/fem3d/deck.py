@@ -26,7 +26,8 @@ from impactlab.fem3d.solver.mesh import (
 from impactlab.fem3d.solver.system import refuse_rate
 from impactlab.model.checks import instance, one_of, positive
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact, Material
+from impactlab.model.impact import Impact
+from impactlab.model.material import Material
 from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.verification.solutions import hertz
 

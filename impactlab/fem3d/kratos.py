@@ -23,7 +23,8 @@ from impactlab.fem3d.solver.march import History, Moment, Progress
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, check_mesh, nodal_masses, sphere_density
 from impactlab.fem3d.solver.system import refuse_rate
 from impactlab.model.checks import integer, positive
-from impactlab.model.impact import Impact, Material
+from impactlab.model.impact import Impact
+from impactlab.model.material import Material
 from impactlab.variables import provenance
 
 ELEMENT, LAW = "SmallDisplacementBbarElement3D8N", "SmallStrainJ2Plasticity3DLaw"

@@ -13,12 +13,13 @@ from impactlab.fem3d.solver import MOST_THREADS, Cost, Mesh, estimate, least_cos
 from impactlab.fem3d.solver.estimates import checked_patch, contact_radius
 from impactlab.figures.labels import counted
 from impactlab.model import cost
+from impactlab.model.case_table import case_table
 from impactlab.model.checks import positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import Value, flatten, with_values
 from impactlab.model.quantities import amount, time
-from impactlab.simulate import case_table, solve
+from impactlab.simulate import solve
 from impactlab.study.schema.declarations import ImpactStudy
 
 MODELS = ("euler_bernoulli", "timoshenko", "spring_mass")  # in the order of tables and figures

@@ -28,12 +28,12 @@ from impactlab.fem3d.solver.evaluation import plastic_reach
 from impactlab.fem3d.wing import SIZES, SOLID, VARIABLES
 from impactlab.methods.runs import listed
 from impactlab.model import cost
+from impactlab.model.case_table import case_table
 from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import with_values
-from impactlab.simulate import case_table
 from impactlab.simulate import solve as solve_cases
 from impactlab.solver import BEAM_MODELS
 from impactlab.solver.jit import SOURCES_HASH

@@ -2,8 +2,6 @@
 
 m_s w_s'' = -F + m_s g, w_s(0) = 0, w_s'(0) = v0; indentation delta = w_s - w(L/2), or against the
 mean under the contact's pressure (contact_patch.py).
-
-Each model of the beam has a kernel of its own, so that a study compiles only what it needs.
 """
 
 from __future__ import annotations
@@ -13,42 +11,18 @@ from collections.abc import Callable
 
 import numpy as np
 
-from impactlab.solver import (
-    BEAM_MODELS,
-    euler_bernoulli,
-    event_tracker,
-    lumped,
-    modal,
-    responses,
-    strip,
-    timoshenko,
-)
-from impactlab.solver.beam import half_node, make_beam, make_grid, rest_beam
+from impactlab.solver import event_tracker
 from impactlab.solver.contact import history as contact_history
 from impactlab.solver.contact import prestress
-from impactlab.solver.contact.history import make_pair
-from impactlab.solver.contact.switch import DAMPED
 from impactlab.solver.contact_patch import contact_radius
-from impactlab.solver.fibre_plasticity import (
-    catch_up,
-    make_plastic_state,
-    plastic_energy,
-    rest_plastic_state,
-)
-from impactlab.solver.jit import allocating, compiled, inlined
-from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE
-from impactlab.solver.section import FibreSection, Room, cut_section, make_room, with_rate
-from impactlab.solver.stability import discretise
+from impactlab.solver.fibre_plasticity import catch_up
+from impactlab.solver.jit import compiled, inlined
 from impactlab.solver.state import BeamModel, Flight, State
-from impactlab.solver.types import CONTACT_PATCH, MODAL, Array, Record
+from impactlab.solver.types import CONTACT_PATCH, Array, Record
 
 _AUDITS = 500
 _LEAST_STRIDE, _LARGEST_STRIDE = 16, 64
 """Energy is audited 500 times per run, but at most every 16 steps and at least every 64."""
-
-WORST_ENERGY_ERROR = 0.05
-"""Imbalance over the initial kinetic energy beyond which a run gives no other answer."""
-
 
 Point = tuple[float, float, float, float, float]
 """Force, mid-span deflection and curvature, sphere displacement and indentation at a step."""
@@ -145,7 +119,7 @@ def _audit(model: BeamModel) -> Callable[..., float]:
 
 
 def _contact(model: BeamModel, extended: bool) -> Callable[..., tuple[float, float, float]]:
-    """Return the contact of a sphere with a model of the beam; extended: see _kernel."""
+    """Return the contact of a sphere with a model of the beam; extended: see kernels.py."""
     mid_curvature, sag, beneath = model.curvature, model.sag, model.beneath
     lift, moments = model.lift, model.moments
     force = damped_force if extended else contact_force
@@ -191,14 +165,14 @@ def _contact(model: BeamModel, extended: bool) -> Callable[..., tuple[float, flo
     return touch
 
 
-def _time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
-    """Return the time loop of a model of the beam; extended: see _kernel."""
+def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
+    """Return the time loop of a model of the beam; extended: see kernels.py."""
     move_beam, mid_curvature, spread = model.step, model.curvature, model.spread
     flight_stride, fly = model.flight_stride, None if model.flight is None else _leaps(model.flight)
     touch, imbalance = _contact(model, extended), _audit(model)
 
     @inlined
-    def march(  # noqa: C901 one loop
+    def march(
         case: Record, state: State, contact: Record, events: Record, samples: Array, steps: int
     ) -> int:
         """March from first touch to the end; return which row of beam.w is the last, or -1.
@@ -259,172 +233,3 @@ def _time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
         return 1 - now
 
     return march
-
-
-@allocating
-def _section_at_rate(case: Record, fibres: Array, room: Room) -> FibreSection:
-    return with_rate(cut_section(case, fibres, room), case)
-
-
-@compiled
-def _end_of_alike(cases: Array, start: int) -> int:
-    """Return where the cases end that from `start` on need the same memory."""
-    stop, first = start + 1, cases[start]
-    while stop < cases.size:
-        case = cases[stop]
-        if case.nodes != first.nodes or case.points != first.points:
-            break
-        stop += 1
-    return stop
-
-
-@compiled
-def _keep_profiles(
-    state: State, now: int, r: int, deflection: Array, plastic_strain: Array, peeq: Array
-) -> None:
-    """Keep the beam's final state as that of run r, if it is asked for."""
-    # element by element: slices would compile the message of numpy's error, for seconds
-    for i in range(deflection.shape[1]):
-        node = half_node(state.grid, i)
-        deflection[r, i] = state.beam.w[now, node]
-        for j in range(peeq.shape[2]):
-            plastic_strain[r, i, j] = state.plastic.plastic_strain[node, j]
-            peeq[r, i, j] = state.plastic.peeq[node, j]
-
-
-def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
-    """Return a function that solves a case; extended: see _kernel."""
-    march, lift = _time_loop(model, extended), model.lift
-    largest_deflection = None if model.flight is None else model.flight.largest
-
-    @inlined
-    def run(
-        case: Record,
-        answer: Record,
-        contact: Record,
-        events: Record,
-        samples: Array,
-        state: State,
-        steps: int,
-    ) -> int:
-        """Solve a case from rest, and fill in its answer; see march for what is returned."""
-        now = march(case, state, contact, events, samples, steps)
-        if largest_deflection is not None:
-            events.w_max = largest_deflection(state, events.w_max)
-        if now < 0:
-            answer.status = DIVERGED
-            return now
-        answer.energy_error = events.energy_error
-        if answer.energy_error > WORST_ENERGY_ERROR:
-            answer.status = ENERGY_OUT_OF_BALANCE
-        else:
-            pair, section, grid, plastic = state.pair, state.section, state.grid, state.plastic
-            _, dissipated = plastic_energy(plastic, section, grid)
-            responses.read_contact(answer, events, contact, pair)
-            responses.read_inputs(answer, case, contact, pair)
-            if lift is not None:
-                answer.permanent_indentation += lift(state, contact, 0.0)
-            responses.read_rebound(answer, case, events)
-            responses.read_beam(answer, case, events, plastic.peeq, grid, dissipated)
-        return now
-
-    return run
-
-
-def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[..., None]:
-    """Return the kernel of a model of the beam.
-
-    extended: with a load over the contact patch, strain rate, bending across the width, stress
-    beneath the contact and damping, which other kernels are free of, so that they compile sooner.
-
-    It solves every case of R, by records and arrays of as many rows. cases: CASE records. fibres:
-    as by model.section.fibre_table. answers: blank RESPONSE records, filled. contacts, events:
-    zeros, CONTACT and EVENTS records to work in. samples: shape (R, 5, S), filled with force,
-    mid-span deflection, mid-span curvature, sphere displacement and indentation at S equal
-    intervals from 0 to the duration; S = 0 for none. deflection (R, nodes), plastic_strain and peeq
-    (R, nodes, P // 2): filled with the beam's final state; length 0 for none. A run that diverges
-    leaves NaN and its status.
-
-    A record does not keep its array alive in compiled code, so kernels make no arrays of records:
-    those of all runs are the caller's, who holds them until this returns.
-    """
-    make, renew, deflect, run = model.make, model.renew, model.deflect, _run(model, extended)
-    cut = _section_at_rate if extended else cut_section
-
-    def kernel(
-        cases: Array,
-        fibres: Array,
-        answers: Array,
-        contacts: Array,
-        events: Array,
-        samples: Array,
-        deflection: Array,
-        plastic_strain: Array,
-        peeq: Array,
-    ) -> None:
-        stop = 0
-        while stop < cases.size:
-            start, first = stop, cases[stop]
-            stop = _end_of_alike(cases, start)
-            room, size = make_room(first), make_grid(first.nodes, 1.0, 1.0, 1.0, 1.0)
-            section = cut(first, fibres[start], room)
-            beam, plastic = make_beam(size), make_plastic_state(size, section)
-            extra = make(first, section, size)
-            for r in range(start, stop):
-                case, pair = cases[r], make_pair(cases[r])
-                section = cut(case, fibres[r], room)
-                grid, steps = discretise(case, pair, section)
-                rest_beam(beam)
-                rest_plastic_state(plastic, section)
-                if renew is not None:
-                    renew(extra, section, grid)
-                else:
-                    extra = make(case, section, grid)
-                state = State(pair, section, grid, beam, plastic, extra)
-                now = run(case, answers[r], contacts[r], events[r], samples[r], state, steps)
-                if now < 0:
-                    samples[r] = np.nan
-                    continue
-                if deflection.shape[1] > 0:
-                    deflect(state, now)
-                _keep_profiles(state, now, r, deflection, plastic_strain, peeq)
-
-    kernel.__qualname__ = name
-    return allocating(kernel)
-
-
-_EULER_BERNOULLI = _kernel("euler_bernoulli", euler_bernoulli.MODEL)
-_LUMPED = _kernel("lumped", lumped.MODEL)
-_EXTENDED_LUMPED = _kernel("extended_lumped", lumped.MODEL, True)
-_LEAPFROG = {
-    "euler_bernoulli": _EULER_BERNOULLI,
-    "elastic": _EULER_BERNOULLI,
-    "timoshenko": _kernel("timoshenko", timoshenko.MODEL),
-    "spring_mass": _LUMPED,
-    "rigid": _LUMPED,
-}
-_EXTENDED_EULER_BERNOULLI = _kernel("extended_euler_bernoulli", euler_bernoulli.MODEL, True)
-_EXTENDED = {
-    "euler_bernoulli": _EXTENDED_EULER_BERNOULLI,
-    "elastic": _EXTENDED_EULER_BERNOULLI,
-    "timoshenko": _kernel("extended_timoshenko", strip.MODEL, True),
-    "spring_mass": _EXTENDED_LUMPED,
-    "rigid": _EXTENDED_LUMPED,
-}
-_MODAL = (_kernel("modal", modal.MODEL), _kernel("extended_modal", modal.MODEL, True))
-
-
-def is_extended(cases: Array) -> Array:
-    """Return which cases need an extended kernel; of what, see _kernel."""
-    extended = (cases["load"] == CONTACT_PATCH) | (cases["beam_rate_coefficient"] > 0.0)
-    extended |= (cases["width_inertia"] > 0.0) | (cases["contact_prestress"] > 0)
-    for law in DAMPED:
-        extended |= cases["contact"] == law
-    return extended
-
-
-def kernel_of(beam_model: int, scheme: int, extended: bool = False) -> Callable[..., None]:
-    """Return the kernel for a beam model and a scheme, both as numbers; extended: see _kernel."""
-    if scheme == MODAL:
-        return _MODAL[extended]
-    return (_EXTENDED if extended else _LEAPFROG)[BEAM_MODELS[beam_model]]

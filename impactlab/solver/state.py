@@ -40,7 +40,7 @@ class Flight(NamedTuple):
 
 
 class BeamModel(NamedTuple):
-    """A model of the beam in one scheme: compiled functions, from which leapfrog.py makes a kernel.
+    """A model of the beam in one scheme: compiled functions, from which kernels.py makes a kernel.
 
     make(case, section, grid): State.extra at rest. renew(extra, section, grid): put it back to
     rest, for another case of as many nodes; None: `make` does. step(state, now, F): move the beam

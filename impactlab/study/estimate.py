@@ -14,13 +14,13 @@ from distributed.system import MEMORY_LIMIT
 
 from impactlab.methods.sampling import RandomSample
 from impactlab.methods.sobol import Sobol
+from impactlab.model.case_table import case_table
 from impactlab.model.cost import A_SECOND, memory, work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, Value, with_values
 from impactlab.model.plausibility import implausibilities
 from impactlab.model.quantities import amount, time
-from impactlab.simulate import case_table
 from impactlab.study.inventory import BOUND_IT, file_stats
 from impactlab.study.schema.consistency import extremes, further_models, key_of
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy, ImpactStudy

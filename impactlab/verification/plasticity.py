@@ -8,9 +8,11 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from impactlab.model.case_table import case_table
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
-from impactlab.simulate import case_table, fibre_section, run_dataset
+from impactlab.model.impact import Beam, Impact, Sphere, paper_impact
+from impactlab.model.material import Material
+from impactlab.simulate import fibre_section, run_dataset
 from impactlab.solver import RULES, section
 from impactlab.types import Floats
 from impactlab.verification.cases import with_beam_material

@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from impactlab.model.case_table import case_table
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.simulate import case_table, fibre_section, run_dataset
+from impactlab.simulate import fibre_section, run_dataset
 from impactlab.solver.section import bend_at_rate
 from impactlab.solver.strain_rate import CowperSymonds
 from impactlab.types import Floats

@@ -21,10 +21,10 @@ from rich.console import Console
 from rich.table import Table
 
 import impactlab as il
-from impactlab.simulate import case_table
+from impactlab.model.case_table import case_table
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
-from impactlab.solver.leapfrog import kernel_of
+from impactlab.solver.kernels import kernel_of
 from impactlab.solver.outputs import blank
 from impactlab.study.execute import solve_batch
 from impactlab.study.solvers import kernels as impacts

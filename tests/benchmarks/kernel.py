@@ -22,8 +22,9 @@ from rich.console import Console
 from rich.table import Table
 
 import impactlab as il
+from impactlab.model.case_table import case_table
 from impactlab.model.cost import node_steps
-from impactlab.simulate import case_table, solve
+from impactlab.simulate import solve
 
 DURATION = 1e-3
 NODE_STEPS = 1e7

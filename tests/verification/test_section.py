@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.simulate import case_table, fibre_section
+from impactlab.model.case_table import case_table
+from impactlab.simulate import fibre_section
 from impactlab.solver import RULES
 from impactlab.solver.section import bend as bend_row
 from impactlab.solver.types import CASE

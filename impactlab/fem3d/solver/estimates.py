@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from impactlab.model.checks import positive
-from impactlab.model.impact import Impact, Material
+from impactlab.model.impact import Impact
+from impactlab.model.material import Material
 from impactlab.verification.solutions import hertz
 
 if TYPE_CHECKING:

@@ -21,7 +21,8 @@ from impactlab.fem3d.solver.hexahedron import SCRATCH, Vector, W, cross, dot
 from impactlab.fem3d.solver.impulses import RULE, close_gaps
 from impactlab.fem3d.solver.material import PAST_ROWS, STRESS_ROWS, Metal
 from impactlab.fem3d.solver.mesh import BEAM, NEIGHBOURS, SPHERE, Mesh, nodal_masses
-from impactlab.model.impact import Impact, Material
+from impactlab.model.impact import Impact
+from impactlab.model.material import Material
 from impactlab.types import Floats
 
 MOST_THREADS = 24  # pieces of a group, each the work of one thread

@@ -9,6 +9,7 @@ import numpy as np
 
 from impactlab.fem3d.wing import SOLID
 from impactlab.figures import labels
+from impactlab.model.case_table import case_table
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.paper.statements.statement import (
@@ -24,7 +25,7 @@ from impactlab.paper.statements.statement import (
     runs_of,
     statement,
 )
-from impactlab.simulate import case_table, solve
+from impactlab.simulate import solve
 
 EFFECTS_STUDY, MESHES_STUDY = "fig05_effects", "witness_mesh"
 """Studies: with and without shear, and over the strain rate; the 3-D model on finer meshes."""

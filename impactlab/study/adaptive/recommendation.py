@@ -31,10 +31,10 @@ from impactlab.analysis.convergence.axes import NODES, without_limit
 from impactlab.analysis.convergence.judgement import numerical_uncertainty
 from impactlab.methods.distributions import Choice, Distribution
 from impactlab.methods.runs import usable
+from impactlab.model.case_table import case_table
 from impactlab.model.cost import node_steps
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import Value, flatten, with_values
-from impactlab.simulate import case_table
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute

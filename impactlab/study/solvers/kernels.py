@@ -9,13 +9,13 @@ import numpy as np
 import xarray as xr
 
 from impactlab.methods.runs import listed
+from impactlab.model.case_table import case_table
 from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.simulate import (
     answer_variables,
-    case_table,
     compile_kernels,
     profile_coordinates,
     solve,

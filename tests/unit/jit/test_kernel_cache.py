@@ -153,7 +153,7 @@ SOLVE = """
 import hashlib
 import impactlab as il
 from impactlab.simulate import run_dataset
-from impactlab.solver.leapfrog import kernel_of
+from impactlab.solver.kernels import kernel_of
 grid = il.Discretisation(nodes=21, points=5)
 run = run_dataset(il.paper_impact(12.0), grid, duration=1e-3)
 bits = b"".join(run[name].values.tobytes() for name in sorted(run.variables))
@@ -182,7 +182,7 @@ def test_every_process_runs_the_same_machine_code(tmp_path):
 
     started = [start(root) for root in roots]
     out = [process.communicate()[0].split() for process in started]
-    (file,) = (tmp_path / "cache").rglob("*.leapfrog.euler_bernoulli-*.kernel")
+    (file,) = (tmp_path / "cache").rglob("*.kernels.euler_bernoulli-*.kernel")
     compiled_once = file.stat().st_mtime_ns
     out.append(start(roots[1]).communicate()[0].split())
     assert file.stat().st_mtime_ns == compiled_once

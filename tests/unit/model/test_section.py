@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import impactlab as il
+from impactlab.model.case_table import case_table
 from impactlab.model.section import SHAPES, fibre_table, integration_rule, section_of
-from impactlab.simulate import case_table
 from impactlab.solver import RULES
 from impactlab.verification.solutions import quadrature
 

@@ -8,9 +8,9 @@ import pytest
 
 import impactlab as il
 from impactlab.fem3d.wing import SIZES
+from impactlab.model.case_table import case_table
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
-from impactlab.simulate import case_table
 from impactlab.solver import BEAM_MODELS, LOADS, RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 IMPACT = il.paper_impact(15.0)
 GRID = il.Discretisation(nodes=21, points=5)
 DURATION = 2e-3
-DOOR = import_module("impactlab.simulate")
+DOOR = import_module("impactlab.model.case_table")
 
 
 def test_a_wrong_run_is_named_with_its_field():

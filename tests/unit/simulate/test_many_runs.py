@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import impactlab as il
+from impactlab.model.case_table import case_table
 from impactlab.model.parameters import with_values
-from impactlab.simulate import case_table, solve
+from impactlab.simulate import solve
 from impactlab.variables import FLAGS, HISTORIES, PROFILES, RESPONSES
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")

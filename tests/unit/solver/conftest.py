@@ -3,8 +3,8 @@
 import pytest
 
 import impactlab as il
+from impactlab.model.case_table import case_table
 from impactlab.model.parameters import with_values
-from impactlab.simulate import case_table
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 import impactlab as il
-from impactlab.simulate import case_table
+from impactlab.model.case_table import case_table
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import CONTACT, Pair, load
 from impactlab.solver.contact.switch import limit, radius

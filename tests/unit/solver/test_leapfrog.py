@@ -5,10 +5,11 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.simulate import case_table, fibre_section, solve
+from impactlab.model.case_table import case_table
+from impactlab.simulate import fibre_section, solve
 from impactlab.solver import outputs
 from impactlab.solver.contact.history import make_pair
-from impactlab.solver.leapfrog import WORST_ENERGY_ERROR
+from impactlab.solver.kernels import WORST_ENERGY_ERROR
 from impactlab.solver.stability import discretise, largest_time_step
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 

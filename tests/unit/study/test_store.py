@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 import impactlab as il
-from impactlab.simulate import case_table
+from impactlab.model.case_table import case_table
 from impactlab.study import store
 from impactlab.study.inventory import removable_files
 from impactlab.study.shard import KEY, Shard

@@ -7,7 +7,7 @@ from impactlab.fem3d.solver.elements import FULL_MEAN, MEAN, add_forces
 from impactlab.fem3d.solver.hexahedron import SCRATCH, W
 from impactlab.fem3d.solver.mesh import brick
 from impactlab.fem3d.solver.system import MOST_THREADS, ForceAssembly, Group, metal
-from impactlab.model.impact import Material
+from impactlab.model.material import Material
 
 STEEL = Material(density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11)
 

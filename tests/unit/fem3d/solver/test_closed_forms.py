@@ -8,7 +8,8 @@ import pytest
 import whole_sphere
 
 from impactlab.fem3d.solver import quarter_mesh, solve, solve_on
-from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
+from impactlab.model.impact import Beam, Impact, Sphere, paper_impact
+from impactlab.model.material import Material
 from impactlab.verification.solutions import beam_modes, hertz, modal
 
 STEEL = Material(density=7800.0, youngs_modulus=210e9, poissons_ratio=0.3, yield_stress=200e9)

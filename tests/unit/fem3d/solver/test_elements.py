@@ -5,7 +5,7 @@ import pytest
 
 from impactlab.fem3d.solver.elements import HOURGLASS_WORK, WORK
 from impactlab.fem3d.solver.mesh import brick
-from impactlab.model.impact import Material
+from impactlab.model.material import Material
 
 G, K = 200e9 / 2.6, 200e9 / 1.2
 GRADIENT = 1e-7 * np.array([[1.0, -0.4, 0.3], [0.7, 0.5, -0.6], [-0.2, 0.9, -1.1]])

@@ -5,7 +5,7 @@ import pytest
 
 from impactlab.fem3d.solver.material import mises, radial_return
 from impactlab.fem3d.solver.system import metal
-from impactlab.model.impact import Material
+from impactlab.model.material import Material
 from impactlab.verification.solutions.bending import path_stresses
 
 E, NU, SIGMA = 200e9, 0.25, 300e6

@@ -10,7 +10,8 @@ from impactlab.fem3d.wing import SIZES
 from impactlab.methods.grid import Grid
 from impactlab.methods.sobol import Sobol
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Beam, Impact, Material, Sphere, paper_impact
+from impactlab.model.impact import Beam, Impact, Sphere, paper_impact
+from impactlab.model.material import Material
 from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.study.schema.declarations import Analysis, ImpactStudy, Store, Verification
 from impactlab.study.schema.readers import read_any, read_study, read_verification

@@ -1,0 +1,118 @@
+"""The case table: impacts as the records that the kernels take, one per run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from impactlab import wings
+from impactlab.model.checks import column, positive
+from impactlab.model.contact_compliance import case_fields
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Beam, Impact
+from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LOADS, LUMPED_MODELS, SCHEMES
+from impactlab.solver.types import CASE
+
+
+def case_table(
+    impact: Impact,
+    discretisation: Discretisation,
+    *,
+    duration: float,
+    varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]] | None = None,
+    first_run: int = 0,
+) -> np.ndarray[Any, Any]:
+    """Return the kernels' table of cases, one record (solver.types.CASE) per run; check each run.
+
+    first_run: the number that messages give the first one. Raises ValueError naming the run and its
+    field when the model refuses a value.
+    """
+    positive("simulate", "duration", duration)
+    varied = varied or {}
+    for name, values in varied.items():
+        if isinstance(values, str) or np.ndim(values) != 1:
+            raise ValueError(f"varied: {name} = {values!r}: must be a list with one value per run")
+    lengths = {len(values) for values in varied.values()}
+    if len(lengths) > 1:
+        raise ValueError(f"varied: every parameter needs one value per run, got lengths {lengths}")
+    models = map(str, varied.get("beam_model", [impact.beam_model]))
+    discretisation = discretisation.resolved(models)
+    try:
+        columns = {name: column(values) for name, values in varied.items()}
+        many = with_values(impact, discretisation, columns)
+    except (TypeError, ValueError):  # some run may be wrong, or right in a way of its own
+        runs = _one_by_one(impact, discretisation, varied, first_run)
+        tables = [np.zeros(0, CASE), *(_table(*run, duration, 1) for run in runs)]
+        cases = np.concatenate(tables)
+    else:
+        cases = _table(*many, duration, lengths.pop() if lengths else 1)
+    lumped = BEAM_MODELS.index(LUMPED_MODELS[0])
+    for name, words, first, only, reason in (
+        ("scheme", SCHEMES, len(BENDING_MODELS), "leapfrog", ""),
+        ("load", LOADS, lumped, "point", ", because it moves as one mass"),
+    ):
+        refused = (cases["beam_model"] >= first) & (cases[name] != words.index(only))
+        if refused.any():
+            row = int(refused.argmax())
+            model, word = BEAM_MODELS[cases[row].beam_model], words[cases[row][name]]
+            run = f"run {first_run + row}: " if varied else ""
+            raise ValueError(
+                f"{run}{name} = {word!r}: beam_model = {model!r} has {only!r} alone{reason}"
+            )
+    return cases
+
+
+def _one_by_one(
+    impact: Impact,
+    discretisation: Discretisation,
+    varied: Mapping[str, Sequence[Value] | np.ndarray[Any, Any]],
+    first_run: int,
+) -> Iterator[tuple[Impact, Discretisation]]:
+    """Yield the impact of every run. Raises ValueError naming the first one the model refuses."""
+    for run, row in enumerate(zip(*varied.values(), strict=True), first_run):
+        # NumPy's scalars as the Python values that the model checks
+        plain = (value.item() if isinstance(value, np.generic) else value for value in row)
+        values: dict[str, Any] = dict(zip(varied, plain, strict=True))
+        try:
+            yield with_values(impact, discretisation, values)
+        except ValueError as error:
+            stated = ", ".join(f"{name} = {value!r}" for name, value in values.items())
+            several = f" ({stated})" if len(values) > 1 else ""
+            raise ValueError(f"run {run}{several}: {error}") from None
+
+
+def _table(
+    impact: Impact, discretisation: Discretisation, duration: float, runs: int
+) -> np.ndarray[Any, Any]:
+    """Return the records of as many runs as the impact's columns are long, or one for all."""
+    for model in wings.among(impact.beam_model):
+        reason = f"is no model of the kernels: {model.advice}"
+        raise ValueError(f"beam_model = {model.name!r}: {reason}")
+    discretisation = discretisation.resolved(np.unique(impact.beam_model).tolist())
+    values: dict[str, Any] = {**flatten(impact, discretisation), "duration": duration}
+    values["sphere_mass"] = impact.sphere.total_mass
+    for name, entry in PARAMETERS.items():
+        if entry.choices:
+            numbered = enumerate(entry.choices)
+            values[name] = sum(number * (values[name] == word) for number, word in numbered)
+    values |= _section_fields(impact.beam) | case_fields(impact)
+    cases = np.zeros(runs, dtype=CASE)
+    for name in CASE.names or ():
+        cases[name] = values[name]
+    return cases
+
+
+def _section_fields(beam: Beam) -> dict[str, Any]:
+    """Return the fields of solver.types.CASE that hold properties of the section."""
+    section, metal = beam.section, beam.material
+    shear_modulus = 0.5 * metal.youngs_modulus / (1.0 + metal.poissons_ratio)
+    return {
+        "mass_per_length": beam.mass_per_length,
+        "rotary_inertia": section.rotary_inertia(metal.density),
+        "shear_stiffness": beam.shear_coefficient * shear_modulus * section.area,
+        "plate_stiffness": section.plate_stiffness(metal.youngs_modulus, metal.poissons_ratio),
+        "stress_per_moment": section.stress_per_moment,
+    }
