@@ -1,5 +1,7 @@
 """Rules by Newton's method against scipy's eigenvalues; sections against integrals over them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -79,3 +81,12 @@ def test_kernels_get_the_fibres_above_the_axis_twice_outermost_first():
         np.testing.assert_allclose(row[0, :half], z[::-1][:half], rtol=1e-13)
         np.testing.assert_allclose(row[1, :half], 2 * area[::-1][:half], rtol=1e-11)
         assert not row[:, half:].any()
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_kernels_take_the_section_of_the_beam(shape):
+    impact = il.paper_impact()
+    impact = replace(impact, beam=replace(impact.beam, shape=shape))
+    section = section_of(case_table(impact, il.Discretisation(), duration=1e-3))
+    assert type(section) is type(impact.beam.section)
+    assert section.area.item() == impact.beam.section.area
