@@ -199,6 +199,6 @@ sampling:
     x3: {distribution: uniform, low: -1, high: 1}
 """)
     for name in ("x1", "x2", "x3"):
-        assert found[name].attrs["long_name"] == f"{name} of the Ishigami function"
+        assert found[name].attrs["long_name"] == name  # the label of figures and sentences
         assert found[name].attrs["units"] == "1"
     assert found["x3"].attrs["distribution"] == "uniform"

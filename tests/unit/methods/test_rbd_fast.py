@@ -89,8 +89,7 @@ def test_one_hypercube_gives_the_indices_of_each_method(tmp_path):
         shared = [key for key in alone.data_vars if "sensitivity" not in str(key)]
         xr.testing.assert_identical(together[shared].drop_attrs(), alone[shared].drop_attrs())
     assert together["sensitivity_verdict"].item() == together["pawn_verdict"].item()
-    (answer,) = il.answers(runs, together)
-    assert "not linear" not in answer
+    assert not any("not linear" in sentence for sentence in il.answers(runs, together))
     tables = [
         table for record in runs.attrs["indices"] for table in _tables(runs, together, record)
     ]
