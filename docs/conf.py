@@ -52,6 +52,7 @@ napoleon_type_aliases = {
         "Estimate": "study.estimate",
         "Problem": "study.errors",
         "Quantity": "model.quantities",
+        "Rectangle": "model.section",
         "Status": "study.runs",
         "Surrogate": "analysis.surrogate.stored",
     }.items()

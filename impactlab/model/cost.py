@@ -11,6 +11,8 @@ from impactlab.solver import BEAM_MODELS, SCHEMES
 
 A_SECOND = 3e8
 """Node-steps per second of one core; half of it or twice is possible."""
+SOLVED = 0.5
+"""Share of the nodes that the kernels solve: those of half the beam (solver/beam.py)."""
 
 
 def node_steps(cases: Any) -> Any:
@@ -26,7 +28,7 @@ def node_steps(cases: Any) -> Any:
     bends = cases["beam_model"] <= BEAM_MODELS.index("elastic")
     modal = cases["scheme"] == SCHEMES.index("modal")
     largest = np.where(modal, wave, np.where(bends, bending, 0.5 * wave))
-    return 0.5 * cases["nodes"] * cases["duration"] / (cases["courant"] * largest)
+    return SOLVED * cases["nodes"] * cases["duration"] / (cases["courant"] * largest)
 
 
 _RATES = (1.0, 1.0, 1.5, 4.0, 4.0)  # cost of a node per step over the paper's, by beam model
@@ -57,12 +59,12 @@ def work(cases: Any) -> Any:
     # the largest step of the sphere, and of the beam's middle node if any, on that spring
     step = 2.0 / np.sqrt(stiffness * (1.0 / mass + np.where(lumped, 0.0, 1.0 / node)))
     contact = cases["duration"] / (cases["courant"] * step)
-    bending = node_steps(cases) / (0.5 * nodes)
+    bending = node_steps(cases) / (SOLVED * nodes)
     steps = 1.0 + np.where(lumped, _LUMPED * contact, np.hypot(bending, contact))
-    leapfrog = steps * (0.5 * nodes * np.take(_RATES, model) + _BESIDES)
+    leapfrog = steps * (SOLVED * nodes * np.take(_RATES, model) + _BESIDES)
     in_contact = _CONTACTS * 2.94 * indentation / cases["velocity"] / cases["duration"]
-    touching = 0.5 * nodes * _MODE + _MODES_BESIDES
-    yielding = 0.5 * nodes * _YIELDING + _MODES_BESIDES
+    touching = SOLVED * nodes * _MODE + _MODES_BESIDES
+    yielding = SOLVED * nodes * _YIELDING + _MODES_BESIDES
     # A beam that is given the velocity v at a point has there the strain sqrt(3) v/c, c of a bar
     # wave (Boussinesq). The share of steps in which sections yield, or are about to, grows from
     # none where this yields to all at four times it, as fitted to measured times.
