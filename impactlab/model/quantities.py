@@ -265,7 +265,7 @@ def time(seconds: float) -> str:
 def engineering(value: float, units: str, digits: int = 4) -> str:
     """Return a quantity in SI units (UDUNITS) with a prefix: "97.52 µs"; a pure number as it is."""
     rounded, power = float(f"{value:.{digits}g}"), 0
-    if rounded and units in PREFIXED:
+    if rounded and math.isfinite(rounded) and units in PREFIXED:
         power = min(max(math.floor(math.log10(abs(rounded)) / 3), -3), 5)
     prefix = "nµm kMGTP"[power + 3].strip()
     return f"{float(f'{rounded / 1000.0**power:.{digits}g}'):,g} {prefix}{symbol(units)}".rstrip()

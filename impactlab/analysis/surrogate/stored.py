@@ -15,6 +15,7 @@ from impactlab.analysis.surrogate.polynomials import orthonormal
 from impactlab.analysis.surrogate.validation import half_width
 from impactlab.files import read_netcdf
 from impactlab.methods.distributions import distribution_of
+from impactlab.model.quantities import engineering
 from impactlab.types import Floats
 from impactlab.verdicts import names
 
@@ -243,9 +244,10 @@ class Surrogate:
         numbers = np.asarray(array)
         outside = ~((numbers >= low) & (numbers <= high))
         if outside.any():
-            worst = float(numbers[outside][0])
+            ends = float(numbers[outside][0]), low, high
+            worst, least, most = (engineering(end, self.units(name), 6) for end in ends)
             raise ValueError(
-                f"{name} = {worst!r}: outside {low!r} to {high!r} ({self.units(name)}), where the "
+                f"{name}: {worst} is outside {least} to {most}, where the "
                 f"surrogate of study {self._study} was trained: choose a value within, or "
                 "sample a wider range"
             )
