@@ -57,7 +57,7 @@ def simulate(
         ),
     ] = None,
 ) -> None:
-    """Solve one impact, on the paper's beam or another one, and print its responses."""
+    """Solve one impact, on any beam, and print its responses."""
     from impactlab.report.console import print_responses
 
     values: dict[str, Value] = {"velocity": given("--velocity", velocity, "m s-1")}

@@ -159,7 +159,7 @@ def test_a_systematic_uncertainty_stays_however_many_measurements_share_it():
         (linear(BOTH), pair([1.999, 20.0]), "leans on the upper end of the range (2 1)"),
         (linear(BOTH), pair([1.0, 45.0]), "b: "),
         (linear(BOTH, rmse=0.06), pair([1.0, 20.0]), "surrogate's error (0.06 1) exceeds"),
-        (linear(BOTH), pair([1.0, 20.0], velocity=7.0), "outside 1.0 to 5.0"),
+        (linear(BOTH), pair([1.0, 20.0], velocity=7.0), "7 is outside 1 to 5"),
         (linear(BOTH), [measured("dent", 1.0, 0.1)], "is no response of the study"),
         (
             linear(BOTH, beam_depth=0.02),
