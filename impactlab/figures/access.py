@@ -160,7 +160,7 @@ def missing_words(runs: xr.Dataset, mask: xr.DataArray, where: str) -> str:
 
 
 @dataclass(frozen=True)
-class Verdict:
+class StatedVerdict:
     """A verdict of the analysis, from its CF flags.
 
     flag: its name. sound: False where it is a warning. meaning: a sentence or "". value: the
@@ -178,7 +178,7 @@ class Verdict:
         return self.flag.replace("_", " ")
 
 
-def verdict(analysis: xr.Dataset, variable: str, response: str) -> Verdict | None:
+def verdict(analysis: xr.Dataset, variable: str, response: str) -> StatedVerdict | None:
     """Return a response's verdict; None where the analysis gives none.
 
     variable: one on `response` alone, with CF flag_values and flag_meanings, and with
@@ -195,13 +195,13 @@ def is_sound(analysis: xr.Dataset, response: str) -> bool:
     return judgement is None or judgement.sound
 
 
-def read(flag: xr.DataArray) -> Verdict:
+def read(flag: xr.DataArray) -> StatedVerdict:
     """Return the verdict in a variable of CF flags that holds one value."""
     (single,) = occurring(flag)
     return single
 
 
-def occurring(flags: xr.DataArray) -> list[Verdict]:
+def occurring(flags: xr.DataArray) -> list[StatedVerdict]:
     """Return every flag that occurs in a variable of CF flags, by rising value; none without."""
     if "flag_values" not in flags.attrs:
         return []
@@ -212,7 +212,9 @@ def occurring(flags: xr.DataArray) -> list[Verdict]:
     meanings = {name: meaning for name, _, meaning in (line.partition(": ") for line in lines)}
     values = np.unique(flags.values).astype(int).tolist()
     flagged = [(names.get(value, "unknown"), value) for value in values]
-    return [Verdict(name, name in sound, meanings.get(name, ""), value) for name, value in flagged]
+    return [
+        StatedVerdict(name, name in sound, meanings.get(name, ""), value) for name, value in flagged
+    ]
 
 
 def confidence(analysis: xr.Dataset) -> str:

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from impactlab.figures import access, curves, labels, record, responses_grid, scales, style
 from impactlab.figures.access import known, responses, usable
-from impactlab.figures.curves import Choice, Plan, plan
+from impactlab.figures.curves import Plan, Selection, plan
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.needs import needed
@@ -210,7 +210,9 @@ def enough(runs: xr.Dataset, analysis: xr.Dataset) -> str:
     return f"Within {share} of the finest grid, uncertainty included: {places}."
 
 
-def _above_round_off(difference: xr.DataArray, selected: Plan) -> Iterator[tuple[Choice, Floats]]:
+def _above_round_off(
+    difference: xr.DataArray, selected: Plan
+) -> Iterator[tuple[Selection, Floats]]:
     """Yield each curve that has an error above round-off, with its errors along the axis."""
     for curve in selected.curves:
         errors = scales.positive(difference.isel(curve.where), above=ROUND_OFF)

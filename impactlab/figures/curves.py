@@ -38,7 +38,7 @@ _WORDS = {False: "measured", True: "another model"}  # by whether the values are
 
 
 @dataclass(frozen=True)
-class Choice:
+class Selection:
     """Positions on design dimensions (for `isel`), their label, and ordinals of colour and line."""
 
     where: dict[str, int]
@@ -54,8 +54,8 @@ class Plan:
     dimensions shown.
     """
 
-    panels: list[Choice]
-    curves: list[Choice]
+    panels: list[Selection]
+    curves: list[Selection]
     shown: dict[str, list[int]]
     held: dict[str, int]
     meanings: list[str]
@@ -89,10 +89,10 @@ def plan(
     per value. prefer: dimensions that get curves first. most: the largest number of curves.
     """
     dims = [dim for dim in design_dims(runs, runs[variable].dims) if dim not in along]
-    panels = [Choice({}, "")]
+    panels = [Selection({}, "")]
     if panel is not None and panel in dims:
         places = scales.spread(runs.sizes[panel], _MOST)
-        panels = [Choice({panel: place}, labels.value(runs[panel], place)) for place in places]
+        panels = [Selection({panel: place}, labels.value(runs[panel], place)) for place in places]
     rank = {dim: position for position, dim in enumerate(prefer)}
     left = sorted((dim for dim in dims if dim != panel), key=lambda dim: rank.get(dim, len(rank)))
     # beside a wing's runs, as no model there is refined by what refines the other
@@ -112,7 +112,7 @@ def plan(
         where = {dim: shown[dim][i] for dim, i in zip(shown, ordinals, strict=True)}
         label = ", ".join(labels.value(runs[dim], position) for dim, position in where.items())
         colour, line = (*ordinals, *ordinals, 0, 0)[:2]
-        curves.append(Choice(held | where | single, label, (colour, line)))
+        curves.append(Selection(held | where | single, label, (colour, line)))
     return Plan(panels, curves, shown, held, [labels.parameter(runs[dim]) for dim in shown])
 
 
@@ -124,7 +124,7 @@ def _held(coordinate: xr.DataArray) -> int:
     return coordinate.size // 2 if coordinate.dtype.kind in "if" else 0
 
 
-def look(curve: Choice, *, markers: bool = False) -> dict[str, Any]:
+def look(curve: Selection, *, markers: bool = False) -> dict[str, Any]:
     """Return the colour by the first shown dimension, the line style by the second (or the first).
 
     Later curves lie below, as they are the larger ones where the values rise. Markers are for few
@@ -140,7 +140,7 @@ def look(curve: Choice, *, markers: bool = False) -> dict[str, Any]:
     }
 
 
-def add(ax: Axes, x: Floats, y: Floats, curve: Choice, *, markers: bool = True) -> bool:
+def add(ax: Axes, x: Floats, y: Floats, curve: Selection, *, markers: bool = True) -> bool:
     """Draw a curve that has finite points; return whether it has."""
     finite = bool(np.isfinite(x + y).any())
     if finite:

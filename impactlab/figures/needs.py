@@ -59,7 +59,7 @@ class Needs(NamedTuple):
         parts = [labels.listing(levels), *(labels.values(kind, [0])[0] for kind in kinds)]
         return ", ".join(filter(None, parts))
 
-    def verdict(self, axis: str, name: str) -> access.Verdict | None:
+    def verdict(self, axis: str, name: str) -> access.StatedVerdict | None:
         """Return the worst verdict on a response at the finest grid, over the rest of the study."""
         if f"{axis}_verdict" not in self.analysis or not access.known(self.analysis, name):
             return None

@@ -38,13 +38,13 @@ def shown(runs: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
     return values * unit.scale, labels.axis(labels.response(name), unit.symbol)
 
 
-def warn(ax: Axes, verdict: access.Verdict | None) -> None:
+def warn(ax: Axes, verdict: access.StatedVerdict | None) -> None:
     """Write a verdict under the panel's title if it is a warning."""
     if verdict and not verdict.sound:
         write(ax, verdict)
 
 
-def write(ax: Axes, verdict: access.Verdict | None) -> None:
+def write(ax: Axes, verdict: access.StatedVerdict | None) -> None:
     """Write a verdict, if there is one, under the panel's title, bold where it is a warning."""
     if verdict is None:
         return

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from impactlab.figures import access, curves, labels, record, scales, style
 from impactlab.figures.access import usable
-from impactlab.figures.curves import Choice, Plan, plan
+from impactlab.figures.curves import Plan, Selection, plan
 from impactlab.figures.labels import Display, display
 from impactlab.files import replaced
 from impactlab.types import Floats
@@ -96,7 +96,7 @@ def force_history(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 def _panel_per_run(
     selected: Plan, columns: int, height: float, *, sharex: bool
-) -> tuple[Figure, list[tuple[Axes, dict[str, int], Choice]]]:
+) -> tuple[Figure, list[tuple[Axes, dict[str, int], Selection]]]:
     """Return a figure and, for each chosen run, its panel, its place among the runs, its curve."""
     shown = [(panel, curve) for curve in selected.curves for panel in selected.panels]
     titles = [

@@ -320,7 +320,7 @@ def named(analysis: xr.Dataset, response: str, verdict: str = "sensitivity_verdi
     return _judged(response, access.verdict(analysis, verdict, response))
 
 
-def _judged(name: str, verdict: access.Verdict | None) -> Cell:
+def _judged(name: str, verdict: access.StatedVerdict | None) -> Cell:
     text = verdict.words if verdict and not verdict.sound else ""
     return Cell(labels.title(name), "warning" if text else "", text)
 
