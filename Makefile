@@ -34,7 +34,7 @@ BIN := $(VENV)/bin
 KEY := $(shell { pwd -P; $(PYTHON) -c 'import sys; print(sys.version_info[:2])'; } 2>&1 | cksum | cut -d ' ' -f 1)
 MADE := $(VENV)/made-$(KEY)
 MADE_OLDEST := $(OLDEST)/made-$(KEY)
-# Without it every step of a study compiles its libraries' bytecode again, for seconds.
+# Without it every step compiles its libraries' bytecode again, for seconds.
 unexport PYTHONDONTWRITEBYTECODE
 IN_VENV := PATH="$(abspath $(BIN)):$$PATH"
 PIP := $(BIN)/python -m pip --disable-pip-version-check

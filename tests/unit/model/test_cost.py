@@ -73,7 +73,7 @@ def test_steps_are_about_as_many_as_the_kernel_takes(model, nodes, mass):
 
 
 def _seconds(case):
-    """Return the processor time of a run."""
+    """Return a run's processor time."""
     cases, least = np.repeat(case, 8), math.inf
     for _ in range(5):
         start = time.thread_time()

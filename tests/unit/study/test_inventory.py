@@ -1,4 +1,4 @@
-"""Answers, progress and removable files of a study from shards."""
+"""A study's answers, progress and removable files, from its shards."""
 
 import numpy as np
 import pytest
