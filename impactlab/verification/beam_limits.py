@@ -92,7 +92,7 @@ def _against_closed_forms(
     rest = IMPULSE_DURATION - centroid
     expected = closed.deflection_under_impulse(beam, impulse, rest).item()
     struck = closed.profile_under_impulse(beam, impulse, rest, x)
-    end = f"{IMPULSE_DURATION * 1e6:g} us after first touch"
+    end = f"{IMPULSE_DURATION * 1e6:g} µs after first touch"
     impulsive = Comparisons(f"{end}, impulse at the force's centroid")
     impulsive.relative("mid-span deflection", "m", w[-1].item(), expected, 5e-4)
     impulsive.curve("deflected shape", "m", profile, struck, 3e-3)

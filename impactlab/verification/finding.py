@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 import traceback
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -15,6 +16,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.model.plausibility import ImplausibleWarning, TooShortWarning
+from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.types import Floats
 
 log = logging.getLogger(__name__)
@@ -37,6 +39,11 @@ class Comparison:
     error: float
     tolerance: float
     measure: str = "relative"
+
+    def __post_init__(self) -> None:
+        """Spell the names of study files as people write them."""
+        object.__setattr__(self, "quantity", spelled(self.quantity))
+        object.__setattr__(self, "where", spelled(self.where))
 
     @property
     def passed(self) -> bool:
@@ -115,6 +122,18 @@ class Comparisons(list[Comparison]):
         return self
 
 
+_SPELLED = {law: record.short for law, record in CONTACT_LAWS.items()} | {
+    "euler_bernoulli": "Euler-Bernoulli",
+    "timoshenko": "Timoshenko",
+}
+_NAME = re.compile(rf"\b(?:{'|'.join(_SPELLED)})\b|(?<=[a-z][a-z])_(?=[a-z][a-z])")
+
+
+def spelled(text: str) -> str:
+    """Return a text with contact laws and beam models as papers spell them, and no underscores."""
+    return _NAME.sub(lambda match: _SPELLED.get(match[0], " "), text)
+
+
 def words(name: str) -> str:
     """Return the name of a variable in words."""
     return name.replace("midspan", "mid-span").replace("_", " ")
@@ -140,6 +159,10 @@ class Curve:
     x: Floats
     y: Floats
     independent: bool = False
+
+    def __post_init__(self) -> None:
+        """Spell the names of study files as people write them."""
+        object.__setattr__(self, "label", spelled(self.label))
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,11 @@ from impactlab.verification.finding import (
     Check,
     Comparison,
     Comparisons,
+    Curve,
     Finding,
     Outcome,
     gravest_first,
+    spelled,
     worst,
 )
 
@@ -120,3 +122,18 @@ def test_every_check_is_listed_by_a_name_of_its_own():
     files = Path(catalogue.__file__).parent.glob("*.py")
     assert sum(file.read_text("utf-8").count("\n@check(") for file in files) == len(CATALOGUE)
     assert all(check.title and check.source for check in CATALOGUE.values())
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("energy lost, kogut_etsion, 3 m/s", "energy lost, Kogut-Etsion, 3 m/s"),
+        ("euler_bernoulli, half_space, mjg", "Euler-Bernoulli, half space, MJG"),
+        ("mid-span (w_xx; psi_x)", "mid-span (w_xx; psi_x)"),
+    ],
+)
+def test_names_of_study_files_are_spelled_as_in_papers(name, text):
+    comparison = Comparison(name, name, "1", 1.0, 1.0, 0.0, 1.0)
+    assert comparison.quantity == comparison.where == text
+    assert Curve(name, np.zeros(1), np.zeros(1)).label == text
+    assert spelled(text) == text, "a stored finding stays as it is"
