@@ -17,7 +17,7 @@ from impactlab.report.cautions import beside
 from impactlab.report.page import Entry
 
 _NONE = 1e-3
-"""Largest change, relative to the largest magnitude, that counts as no effect."""
+"""Largest change, relative to the magnitude where it is, that counts as no effect."""
 _ROUND_OFF = 1e-6
 """Largest share of the largest magnitude that is taken for zero."""
 _SLIGHT = 1e-4
@@ -65,7 +65,7 @@ def headline(runs: xr.Dataset, response: str) -> str:
         return f"{over} {'; '.join(texts)}"
     span, trends = _range(runs, values), {trend for trend, _ in courses}
     ordered = values.sortby(main)
-    mean = ordered.mean({*values.dims} - {main})
+    mean = ordered.where(ordered.notnull().all(main)).mean({*values.dims} - {main})
     size, spread = float(np.ptp(mean.values)), float(values.max() - values.min())
     average = _trend(mean.values, size)
     if average and size > _CLEAR * spread:
@@ -113,10 +113,9 @@ def _finite(runs: xr.Dataset, name: str) -> xr.DataArray:
 
 
 def _change(values: xr.DataArray, dim: str) -> float:
-    """Return the largest change along a parameter, relative to the largest magnitude."""
-    largest = float(abs(values).max())
-    change = float((values.max(dim) - values.min(dim)).max())
-    return change / largest if largest else 0.0
+    """Return the largest change along a parameter, relative to the magnitude where it is."""
+    change, magnitude = values.max(dim) - values.min(dim), abs(values).max(dim)
+    return float((change / magnitude.where(magnitude > 0)).fillna(0.0).max())
 
 
 def _factors(values: xr.DataArray) -> list[str]:

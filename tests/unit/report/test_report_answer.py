@@ -129,6 +129,25 @@ def test_each_factor_has_its_sentence_without_effect_too():
     )
 
 
+def test_an_effect_on_small_values_alone_is_one():
+    """A share of the largest value would call it none."""
+    values = 1e6 * SPEEDS**3 * [[1.0], [1.0]]
+    values[1, 0] *= 1.5
+    first, second = answers(_grid(values, contact=["hertz", "stronge"], velocity=SPEEDS))
+    assert "with Stronge it rises from 188 to 4" in first
+    assert second == "Contact law, Stronge instead of Hertz: peak force 0 to +50 %."
+
+
+def test_a_trend_is_that_of_complete_curves():
+    """Where the large answers fail at the high end, the mean of the others falls."""
+    depths = np.array([0.01, 0.02, 0.03, 0.04])
+    values = 1e3 * SPEEDS[:, None] ** 0.2 * np.array([1.0, 1.0, 1.0, 20.0])
+    values[3:, 3] = np.nan
+    first, *_, last = answers(_grid(values, velocity=SPEEDS, beam_depth=depths))
+    assert " the peak force rises " in first
+    assert last == "Doubtful: peak force (missing in 3 runs)."
+
+
 def test_an_interaction_alone_is_given_no_direction():
     depths = np.array([0.01, 0.02, 0.03, 0.04])
     values = 9e3 + 100 * (SPEEDS[:, None] - SPEEDS.mean()) * np.array([-1.5, -0.5, 0.5, 1.5])

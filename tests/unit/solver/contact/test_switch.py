@@ -29,12 +29,13 @@ FORCES = """
 import numpy as np
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import CONTACT, Pair, load
+from impactlab.solver.contact.switch import damping
 
 for law in range(len(LAWS)):
     contact = np.zeros(2, CONTACT)
     for i in range(2):
         load(contact[i], Pair(law, 1e11, 0.03, 3e8, 0.3), (1e-5, 1e-4)[i])
-    print(contact["F_m"], contact["delta_r"])
+    print(contact["F_m"], contact["delta_r"], damping(law, 1e3, 1e-4, 1.0, 1e11, 0.03, 3e8, 0.3))
 """
 
 
