@@ -85,12 +85,15 @@ def _lead(runs: xr.Dataset, analysis: xr.Dataset, base: Figure) -> Figure:
     def alone(runs: xr.Dataset) -> xr.Dataset:
         return runs.drop_vars([name for name in access.responses(runs) if name != response])
 
+    def judged(analysis: xr.Dataset) -> xr.Dataset:
+        return analysis.sel(response=[response]) if access.known(analysis, response) else analysis
+
     return Figure(
         LEAD,
         f"{base.title}: {labels.response(response)}",
         lambda runs, analysis: len(access.responses(runs)) > _PANELS,
-        lambda runs, analysis: base.plot(alone(runs), analysis),
-        lambda runs, analysis: base.caption(alone(runs), analysis),
+        lambda runs, analysis: base.plot(alone(runs), judged(analysis)),
+        lambda runs, analysis: base.caption(alone(runs), judged(analysis)),
     )
 
 

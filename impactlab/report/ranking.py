@@ -148,7 +148,8 @@ def _written(
     surplus = value - first.values[number]  # none where the first order ranks
     reach = margin + first.margins[number] + error + first.numerical[number]
     if surplus > max(_INTERACTS, reach):
-        text += f", {max(0.0, 100 * first.values[number]):.0f} % alone"
+        alone = f"{100 * first.values[number]:.0f} % alone"
+        text += f", {alone if first.above_noise[number] else 'through interactions'}"
     if "total_order" in analysis and (exact := _exact(runs)):
         text += f", exactly {labels.percent(exact[measures.parameters(analysis)[number]], 3)}"
     return text

@@ -272,3 +272,14 @@ def test_one_panel_of_the_headlines_response_leads(velocity_study, sample_study)
     runs.attrs["title"] = "The peak plastic strain"  # whose indices are not usable
     analysis["sensitivity_verdict"].loc["peak_plastic_strain"] = 1
     assert applicable(runs, analysis)[LEAD].title == "Sobol indices: peak force"
+
+
+def test_the_leading_panel_ranks_by_its_own_response(sample_study):
+    runs, analysis = sample_study
+    runs.attrs["title"] = "The peak force"
+    index = analysis["total_order"]
+    index[:] = 0.1
+    index.loc["peak_force", "beam_depth"] = 0.5
+    index.loc["contact_duration", "sphere_radius"] = 0.9
+    (panel,) = applicable(runs, analysis)[LEAD].plot(runs, analysis).axes
+    assert panel.get_yticklabels()[0].get_text() == "depth of the beam"
