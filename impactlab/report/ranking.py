@@ -40,7 +40,8 @@ def headline(runs: xr.Dataset, analysis: xr.Dataset, family: Family, response: s
     if family is not SOBOL:
         text = f"{listed} {'matter' if plural else 'matters'} most for the {name}"
     else:
-        total = index.values[numbers].sum() / max(1.0, np.nansum(index.values))
+        least = (index.values - index.margins)[numbers].sum()  # where intervals end
+        total = least / max(1.0, np.nansum(index.values))
         part = "most" if total > 0.5 else "the largest part"
         text = f"{listed} {'cause' if plural else 'causes'} {part} of the scatter of the {name}"
     if index.numerically_lost[numbers].any():
@@ -73,7 +74,11 @@ def entries(
 
 
 def without_effect(analysis: xr.Dataset, family: Family, responses: list[str]) -> list[Entry]:
-    """Return the parameters whose total order is surely below 1 % for all of these responses."""
+    """Return the parameters whose total order is below 1 % for all of these responses.
+
+    The whole interval and the numerical error are below it: of 200 samples of Sobol's G function,
+    x4 with 1.05 % is called without effect in 2 % at 64 base samples, and in none at 1024.
+    """
     if family is not SOBOL or "total_order" not in analysis or not responses:
         return []
     indices = [measures.index(analysis, "total_order", name) for name in responses]

@@ -6,11 +6,15 @@ import samples
 import xarray as xr
 from known_indices import INDICES
 
+import impactlab as il
+from impactlab.analysis import sensitivity
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.axes import NODES
 from impactlab.figures.convergence import _NODES as NODES_FIGURE
+from impactlab.figures.measures import SOBOL
 from impactlab.report.answer import LINES, answers, entries
 from impactlab.report.convergence import convergence
+from impactlab.report.ranking import without_effect
 from impactlab.variables import described
 from impactlab.verification.functions import FUNCTIONS
 
@@ -52,6 +56,32 @@ def test_of_a_sample_leads_with_a_response_that_is_usable():
     assert lines[-1] == "Do not rely on the indices of: contact duration (mostly constant)."
     analysis["sensitivity_verdict"][:] = 1
     assert answers(runs, analysis)[0] == "No sensitivity index of this study is usable."
+
+
+def test_shares_whose_intervals_reach_below_half_do_not_cause_most():
+    runs = samples.sample(64, 4)[["peak_force", "status"]]
+    analysis = samples.indices(runs).drop_dims("history")
+    analysis["total_order"][:] = [0.55, 0.04, 0.03, 0.02]
+    analysis["total_order_interval"][:] = [0.03, 0.01, 0.01, 0.01]
+    assert " causes most of the scatter" in answers(runs, analysis)[0]
+    analysis["total_order_interval"][:] = [0.08, 0.01, 0.01, 0.01]
+    assert " causes the largest part of the scatter" in answers(runs, analysis)[0]
+
+
+@pytest.mark.long
+def test_a_parameter_of_one_per_cent_is_rarely_called_without_effect(tmp_path):
+    """x4 of Sobol's G function has a total order of 1.05 %, x8 one of 0.01 %."""
+    without = {"x4": 0, "x8": 0}
+    parameters = {f"x{i}": il.Uniform(0, 1) for i in range(1, 9)}
+    for seed in range(200):
+        sampling = il.Sobol(base_samples=64, seed=seed, parameters=parameters)
+        study = il.Study(title="G", function="g", sampling=sampling, results=tmp_path / str(seed))
+        analysis = sensitivity.analysis(study.run(workers=1))
+        named = str(without_effect(analysis, SOBOL, ["value"]))
+        for name in without:
+            without[name] += name in named
+    assert without["x4"] <= 10
+    assert without["x8"] == 200
 
 
 @pytest.mark.parametrize("function", FUNCTIONS)
