@@ -30,6 +30,7 @@ _COMMANDS = {
     "verify": "impactlab.cli.solve:verify",
     "figures": "impactlab.cli.results:figures",
     "report": "impactlab.cli.results:report",
+    "export": "impactlab.cli.results:export",
     "index": "impactlab.cli.results:index",
     "clean": "impactlab.cli.studies:clean",
     "compile": "impactlab.cli.simulate:compile_kernels",

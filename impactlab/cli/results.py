@@ -7,7 +7,15 @@ from typing import Annotated
 
 import typer
 
-from impactlab.cli.options import RESULTS, RunsFile, assigned, given, new_file, new_folder
+from impactlab.cli.options import (
+    RESULTS,
+    RunsFile,
+    assigned,
+    chosen,
+    given,
+    new_file,
+    new_folder,
+)
 
 _STORED = "A study's runs.nc and analysis.nc, or a verification's findings.nc."
 StoredFiles = Annotated[list[Path], typer.Argument(metavar="STORED...", help=_STORED)]
@@ -99,6 +107,35 @@ def report(
         kind.write(*datasets, pictures, path)
         write_crate(datasets[0], stored[0].parent, pictures, path)
         print(f"{path}: {answers(*datasets)[0]}")
+
+
+def export(
+    study: Annotated[
+        str, typer.Argument(metavar="NAME", help="A study whose results are in results/NAME.")
+    ],
+    to: Annotated[str, typer.Option(help="csv, xlsx, parquet or latex.")] = "csv",
+    responses: Annotated[
+        str, typer.Option(help="Responses, such as peak_force,impulse. Default: the study's.")
+    ] = "",
+    output: Annotated[Path | None, new_folder(help="Default: results/NAME/tables.")] = None,
+) -> None:
+    """Write tables of a study's runs, indices and answers.
+
+    One file per table, or one Excel workbook. Heads state the units: SI, as in runs.nc. LaTeX has
+    the names, units and digits of the figures, for booktabs and siunitx. Excel and Parquet need
+    pip install 'impactlab[tables]'.
+    """
+    from impactlab.figures.access import responses as known
+    from impactlab.report.results import open_stored, stored_files
+    from impactlab.report.tables import export as write_tables
+    from impactlab.study.steps import results_folder
+
+    folder = results_folder(study)
+    with open_stored(stored_files(folder)) as (_, (runs, *analyses)):
+        names = chosen("--responses", responses, known(runs))
+        analysis = next(iter(analyses), None)
+        for path in write_tables(runs, analysis, output or folder / "tables", to, names):
+            print(path)
 
 
 def index(

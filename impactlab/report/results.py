@@ -40,6 +40,15 @@ FINDINGS = Kind(
 )
 
 
+def stored_files(folder: Path) -> list[Path]:
+    """Return the files of a study's results. Raises FileNotFoundError where there are none."""
+    for kind in (RUNS, FINDINGS):
+        if (folder / kind.files[0]).exists():
+            return [folder / name for name in kind.files]
+    command = f"impactlab go studies/{folder.name}.yaml"
+    raise FileNotFoundError(f"{folder}: holds no results: make them with `{command}`")
+
+
 @contextmanager
 def open_stored(paths: Sequence[Path]) -> Iterator[tuple[Kind, list[xr.Dataset]]]:
     """Give the kind of a study's results, and their datasets, runs as `files.checked` in blocks.

@@ -30,8 +30,13 @@ _MADE = (
     "report_explorer.html",
     "solved_study.yaml",
     "ro-crate-metadata.json",
+    *(
+        f"tables/{name}.{suffix}"
+        for name in ("runs", "indices", "answers")
+        for suffix in ("csv", "parquet", "tex")
+    ),
 )
-"""Files that analysis and report leave beside runs.nc."""
+"""Files that analysis, report and `impactlab export` leave beside runs.nc."""
 
 
 def study_file(study: Declared, folder: Path) -> str:
@@ -102,7 +107,8 @@ def write_runs(runs: xr.Dataset, path: Path) -> None:
     with suppress(OSError, ValueError):
         drawings = json.loads(captions.read_text("utf-8"))
     pictures = [file for name in drawings for file in captions.parent.glob(f"{name}.*")]
-    for file in (*pictures, captions, *map(path.with_name, _MADE)):
+    made = (path.parent / name for name in (*_MADE, f"tables/{runs.attrs.get('study')}.xlsx"))
+    for file in (*pictures, captions, *made):
         file.unlink(missing_ok=True)
     log.warning("%s: what was made from the runs before is removed (analysis, report)", path)
 

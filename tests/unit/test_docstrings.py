@@ -19,7 +19,7 @@ RETURNED = {
     "Surrogate": "impactlab.analysis.surrogate.stored",
 }
 """Classes that public functions return, and their modules."""
-FOREIGN = {"Any", "Axes", "Dataset", "Floats", "None", "Path"}
+FOREIGN = {"Any", "Axes", "DataFrame", "Dataset", "Floats", "None", "Path"}
 """Words of return annotations that are documented elsewhere."""
 CONFIG = Config(napoleon_use_ivar=True)
 FIELD = re.compile(r"^:(param|type|ivar|vartype|raises|returns) ?([^:]*):(.*)$", re.MULTILINE)

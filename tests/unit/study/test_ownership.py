@@ -27,6 +27,7 @@ sampling:
 EDITED = YAML.replace("128", "256")
 OTHERS = {"x1": il.Uniform(-3, 3), "x2": il.Uniform(-3, 3)}
 MADE = ("analysis.nc", "indices.csv", "surrogate.nc", "distribution.csv", "report.html")
+MADE += ("tables/runs.csv", "tables/indices.csv", "tables/answers.csv", "tables/ishigami.xlsx")
 
 
 def python(samples=128, **others):
@@ -42,6 +43,8 @@ def solved(tmp_path_factory):
         (folder / place).mkdir()
     (folder / "studies" / "ishigami.yaml").write_text(YAML)
     done("go", "studies/ishigami.yaml", cwd=folder)
+    for kind in ("csv", "xlsx"):
+        done("export", "ishigami", "--to", kind, cwd=folder)
     return folder
 
 
