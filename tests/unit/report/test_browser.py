@@ -1,5 +1,7 @@
 """The report of a sample, read and clicked through in a browser."""
 
+import re
+
 import pytest
 import samples
 
@@ -10,6 +12,8 @@ from impactlab.report.study import write_report
 pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 ALIKE = ("pawn", "regression", "surrogate_first_order", "total_order_by_samples")
 """Left out: their figures look like others, and each takes seconds to draw."""
+PAGES = 8
+"""Most pages of a printed report."""
 FOCUS = "document.activeElement"
 """A page of playwright's, with what it asked for (`asked`) and complained of (`complaints`)."""
 
@@ -141,5 +145,22 @@ def test_prints_without_cutting(page, tmp_path):
     assert not page.locator("nav").is_visible()
     heights = page.locator("figure img").evaluate_all("all => all.map(e => e.offsetHeight)")
     assert max(heights) < 21 / 2.54 * 96 + 1
-    page.pdf(path=tmp_path / "report.pdf", prefer_css_page_size=True)
-    assert (tmp_path / "report.pdf").stat().st_size > 100_000
+    answer = page.locator(".answer")
+    assert answer.evaluate("e => getComputedStyle(e).breakInside") == "avoid"
+    assert answer.evaluate("e => e.getBoundingClientRect().bottom") < 26.7 / 2.54 * 96
+    rows = "table => [...table.rows].filter(row => row.checkVisibility()).length"
+    assert max(table.evaluate(rows) for table in page.locator("table").all()) <= 21
+    printed = page.pdf(path=tmp_path / "report.pdf", format="A4", prefer_css_page_size=True)
+    assert len(printed) > 100_000
+    assert len(re.findall(rb"/Type /Page\b", printed)) <= PAGES
+
+
+def test_prints_what_the_reader_opened(page):
+    page.emulate_media(media="print")
+    fold = page.locator("#provenance details")
+    pointer = "getComputedStyle(e.querySelector('summary'), '::after').content"
+    assert "HTML page" in fold.evaluate(f"e => {pointer}")
+    assert not fold.locator("pre").is_visible()
+    fold.evaluate("e => e.open = true")
+    assert fold.evaluate(f"e => {pointer}") == "none"
+    assert fold.locator("pre").is_visible()
