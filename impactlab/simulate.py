@@ -14,7 +14,7 @@ import numpy as np
 from impactlab.duration import too_short
 from impactlab.jit import precompile
 from impactlab.model.case_table import case_table
-from impactlab.model.checks import integer, positive
+from impactlab.model.checks import instance, integer, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.parameters import PARAMETERS, flatten
@@ -103,6 +103,7 @@ def simulate(
     >>> f"{run.peak_force.item() / 1e3:.0f} kN, {run.contact_force.sizes['time']} times"
     '24 kN, 2001 times'
     """
+    _check_order(impact, discretisation)
     seconds = _seconds(duration)
     grid = discretisation or Discretisation()
     samples = integer("simulate", "samples", samples, 2)
@@ -188,6 +189,7 @@ def simulate_many(
     """
     import xarray as xr
 
+    _check_order(impact, discretisation)
     grid = discretisation or Discretisation()
     seconds = _seconds(duration)
     lists = {name: _in_si(name, values) for name, values in varied.items()}
@@ -243,6 +245,16 @@ def _in_si(name: str, values: Any) -> Any:
     if name not in PARAMETERS or PARAMETERS[name].choices or not isinstance(values, list | tuple):
         return values
     return [in_si(name, value, PARAMETERS[name].units) for value in values]
+
+
+def _check_order(impact: object, discretisation: object) -> None:
+    """Raise ValueError unless both arguments are what they should be; say if they are swapped."""
+    if isinstance(impact, Discretisation) and isinstance(discretisation, Impact | None):
+        swapped = "impact and discretisation are swapped" if discretisation else "it comes second"
+        raise ValueError(f"simulate.impact is a Discretisation: {swapped}: give the impact first")
+    instance("simulate", "impact", impact, Impact)
+    if discretisation is not None:
+        instance("simulate", "discretisation", discretisation, Discretisation)
 
 
 def _seconds(value: Quantity) -> float:

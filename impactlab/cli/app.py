@@ -49,6 +49,10 @@ class _Commands(TyperGroup):
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return a command, or None where there is none of this name."""
         if cmd_name not in _COMMANDS:
+            if not cmd_name.startswith("-"):
+                from impactlab.model.checks import did_you_mean  # late: it loads numpy
+
+                ctx.fail(f"there is no command {cmd_name!r}{did_you_mean(cmd_name, _COMMANDS)}")
             return None
         alone = typer.Typer(rich_markup_mode=None, add_completion=False)
         alone.command(cmd_name, context_settings=_HELP)(resolve_name(_COMMANDS[cmd_name]))

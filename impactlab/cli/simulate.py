@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import logging
 import warnings
+from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -60,12 +62,13 @@ def simulate(
     """Solve one impact, on any beam, and print its responses."""
     from impactlab.report.console import print_responses
 
-    values: dict[str, Value] = {"velocity": given("--velocity", velocity, "m s-1")}
-    values |= {"contact": contact} if contact else {}
-    values |= {"beam_model": beam_model} if beam_model else {}
-    values |= {"nodes": nodes, "points": points, "rule": rule, "scheme": scheme}
+    texts = {"velocity": velocity, "duration": duration, "rule": rule, "scheme": scheme}
+    texts |= {"contact": contact} if contact else {}
+    texts |= {"beam_model": beam_model} if beam_model else {}
+    values: dict[str, Value] = {"nodes": nodes, "points": points}
+    values |= _read({name: (_option(name), text) for name, text in texts.items()})
     values |= _settings(settings or [])
-    seconds = given("--duration", duration, "s")
+    seconds = float(values.pop("duration"))
     impact, grid = _checked(base, values)
     from impactlab.duration import too_short
     from impactlab.model.case_table import case_table
@@ -98,32 +101,68 @@ def simulate(
 def _settings(arguments: list[str]) -> dict[str, Value]:
     """Return the parameters of `--set`, in SI units. Raises ValueError naming the one at fault."""
     from impactlab.model.parameters import PARAMETERS
+    from impactlab.validation.errors import unknown
+
+    names = [name for name in PARAMETERS if name not in wings.sizes()]
+    texts = assigned(arguments)
+    for name in texts:
+        if name not in names:
+            raise ValueError(f"--set {name}: {unknown('parameter', name, names)}")
+    return _read({name: (f"--set {name}", text) for name, text in texts.items()})
+
+
+def _read(stated: Mapping[str, tuple[str, str]]) -> dict[str, Value]:
+    """Return values in SI units, by parameter; stated: option and text of each.
+
+    Raises ValueError naming the option at fault, and the one that its text is for, if any.
+    """
+    values = {}
+    for name, (option, text) in stated.items():
+        try:
+            values[name] = _value(name, option, text)
+        except ValueError as error:
+            raise ValueError(f"{error}{_exchanged(name, stated)}") from None
+    return values
+
+
+def _value(name: str, option: str, text: str) -> Value:
+    """Return the value of a parameter, or of the duration. Raises ValueError naming the option."""
+    from impactlab.model.parameters import PARAMETERS
     from impactlab.model.quantities import whole
     from impactlab.validation.errors import unknown
 
-    values: dict[str, Value] = {}
-    names = [name for name in PARAMETERS if name not in wings.sizes()]
-    for name, text in assigned(arguments).items():
-        if name not in names:
-            raise ValueError(f"--set {name}: {unknown('parameter', name, names)}")
-        parameter, option = PARAMETERS[name], f"--set {name}"
-        if parameter.choices:
-            if text not in parameter.choices:
-                raise ValueError(f"{option}: {unknown('value', text, parameter.choices)}")
-            values[name] = text
-        elif parameter.is_integer:
-            try:
-                values[name] = whole(text)
-            except ValueError as error:
-                raise ValueError(f"{option} = {text!r}: {error}") from None
-        else:
-            values[name] = given(option, text, parameter.units)
-    return values
+    if name == "duration":
+        return given(option, text, "s")
+    parameter = PARAMETERS[name]
+    if not parameter.choices and not parameter.is_integer:
+        return given(option, text, parameter.units)
+    try:
+        if parameter.is_integer:
+            return whole(text)
+    except ValueError as error:
+        raise ValueError(f"{option} = {text!r}: {error}") from None
+    choices = (*parameter.choices, *(["auto"] if name == "scheme" else []))
+    if text not in choices:
+        raise ValueError(f"{option} = {text!r}: {unknown(parameter.long_name, text, choices)}")
+    return text
+
+
+def _exchanged(name: str, stated: Mapping[str, tuple[str, str]]) -> str:
+    """Return a remark on the option that the text of a parameter is for; "" where there is none."""
+    option, text = stated[name]
+    for other, (place, its) in stated.items():
+        with suppress(ValueError):
+            _value(other, place, text)
+            with suppress(ValueError):
+                _value(name, option, its)
+                return f"; {option} and {place} are swapped"
+            return f"; {text!r} is a value for {place}"
+    return ""
 
 
 def _option(name: str) -> str:
     """Return the option that states a parameter."""
-    options = ("velocity", "contact", "beam_model", "nodes", "points", "rule", "scheme")
+    options = ("velocity", "contact", "beam_model", "nodes", "points", "rule", "scheme", "duration")
     return f"--{name.replace('_', '-')}" if name in options else f"--set {name}"
 
 
@@ -134,17 +173,23 @@ def _checked(base: str, values: dict[str, Value]) -> tuple[Impact, Discretisatio
     """
     from impactlab.model.discretisation import Discretisation
     from impactlab.model.impact import BASES
-    from impactlab.model.parameters import with_values
+    from impactlab.model.parameters import PARAMETERS, with_values
     from impactlab.model.plausibility import implausibilities, numbers
+    from impactlab.model.quantities import shown
+    from impactlab.validation.errors import unknown
     from impactlab.validation.refusals import refusal
 
     if base not in BASES:
-        raise ValueError(f"--base = {base!r}: must be one of {', '.join(BASES)}")
+        raise ValueError(f"--base = {base!r}: {unknown('base', base, BASES)}")
     start = BASES[base](), Discretisation()
     if refused := refusal(start, values):
-        stated = f"{refused.name} of the base {base!r}"
+        stated, units = f"{refused.name} of the base {base!r}", PARAMETERS[refused.name].units
         if refused.name in values:
-            stated = f"{_option(refused.name)} = {values[refused.name]!r}"
+            stated = shown(_option(refused.name), values[refused.name], units)
+        for other in values if refused.name in values and units != "1" else ():
+            pair = {refused.name: values[other], other: values[refused.name]}
+            if PARAMETERS[other].units == units and not refusal(start, values | pair):
+                stated = f"{_option(refused.name)} and {_option(other)} are swapped: {stated}"
         raise ValueError(f"{stated}: {refused.reason}")
     case = with_values(*start, values)
     for doubt in implausibilities(numbers(*case)):

@@ -25,7 +25,7 @@ from pydantic import (
     model_validator,
 )
 
-from impactlab.model.quantities import Quantity
+from impactlab.model.quantities import Quantity, engineering
 from impactlab.types import Floats
 from impactlab.validation.fields import LABEL, Number, at_key, quantity, requires, value_type
 from impactlab.validation.stated import Stated
@@ -91,14 +91,19 @@ class Distribution(Entry):
         """Return scipy's distribution of these arguments."""
 
     @model_validator(mode="after")
-    def _check_ends(self) -> Self:
+    def _check_ends(self, info: ValidationInfo) -> Self:
+        units = info.context["parameter"].units  # type: ignore[index]
         low, high = (getattr(self, key, None) for key in ("low", "high"))
         if low is not None and high is not None and high <= low:
             fixed = "; for a single value write {distribution: fixed, value: ...}"
-            raise at_key("high", f"must be above low ({low!r}){fixed if high == low else ''}")
+            raise at_key(
+                "high",
+                f"must be above low ({engineering(low, units)}){fixed if high == low else ''}",
+            )
         mode = getattr(self, "mode", low)
         if mode is not None and not low <= mode <= high:
-            raise at_key("mode", f"must lie from low to high ({low!r} to {high!r})")
+            ends = f"{engineering(low, units)} to {engineering(high, units)}"
+            raise at_key("mode", f"must lie from low to high ({ends})")
         return self
 
     def quantile(self, probability: ArrayLike) -> Floats:

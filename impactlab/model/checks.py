@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from difflib import get_close_matches
 from numbers import Integral, Real
 from typing import Any
 
@@ -81,10 +82,18 @@ def one_of(owner: str, field: str, value: Any, choices: tuple[str, ...]) -> str:
         among = set(value.tolist()) <= set(choices)
     else:  # other arrays have no truth
         among = isinstance(value, str) and value in choices
-    require(among, owner, field, value, f"must be one of {', '.join(choices)}")
+    message = f"must be one of {', '.join(choices)}{did_you_mean(value, choices)}"
+    require(among, owner, field, value, message)
     return value if isinstance(value, Column) else str(value)  # type: ignore[return-value]
+
+
+def did_you_mean(word: object, choices: Iterable[str]) -> str:
+    """Return the question "; did you mean 'hertz'?" with the nearest choice; "" without any."""
+    near = get_close_matches(word[:60], list(choices), n=1) if isinstance(word, str) else []
+    return f"; did you mean {near[0]!r}?" if near else ""
 
 
 def instance(owner: str, field: str, value: Any, kind: type) -> None:
     """Raise ValueError naming the field when `value` is not a `kind`."""
-    require(isinstance(value, kind), owner, field, value, f"must be a {kind.__name__}")
+    article = "an" if kind.__name__[0] in "AEIOU" else "a"
+    require(isinstance(value, kind), owner, field, value, f"must be {article} {kind.__name__}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from impactlab.model.checks import number, positive, require
-from impactlab.model.quantities import SI
+from impactlab.model.quantities import SI, engineering
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,10 +79,12 @@ class Material:
         ratio = number("Material", "poissons_ratio", self.poissons_ratio)
         sound = (ratio >= 0) & (ratio < 0.5)
         require(sound, "Material", "poissons_ratio", ratio, "must be from 0 to below 0.5")
+        stiffness = self.youngs_modulus  # a column holds many
+        amount = engineering(stiffness, "Pa") if isinstance(stiffness, float) else "of the run"
         require(
             self.yield_stress < self.youngs_modulus,
             "Material",
             "yield_stress",
             self.yield_stress,
-            f"must be below youngs_modulus ({self.youngs_modulus!r} Pa); are both in Pa?",
+            f"must be below youngs_modulus ({amount}); are both in Pa?",
         )

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from impactlab import wings
-from impactlab.model.checks import Column
+from impactlab.model.checks import Column, did_you_mean
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import MODELS, Impact
 from impactlab.solver import COMPLIANCES, LOADS, PRESTRESSES, RULES, SCHEMES
@@ -147,7 +147,9 @@ def with_values(
     tree: dict[str, Any] = {"impact": {}, "discretisation": {}}
     for name, value in values.items():
         if name not in PARAMETERS:
-            raise ValueError(f"unknown parameter {name!r}: choose from {', '.join(PARAMETERS)}")
+            near = did_you_mean(name, PARAMETERS)
+            choices = ", ".join(PARAMETERS)
+            raise ValueError(f"unknown parameter {name!r}{near or ':'} choose from {choices}")
         node = tree
         *parents, leaf = PARAMETERS[name].path
         for part in parents:

@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import inf, sqrt
 from operator import attrgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
-from impactlab.model.parameters import flatten
+from impactlab.model.parameters import PARAMETERS, flatten
+from impactlab.model.quantities import misread
 
 LIGHT = 299_792_458.0
 """Speed of light, m/s."""
@@ -101,7 +102,26 @@ def implausibilities(ends: Extremes) -> list[Implausibility]:
                 reason = f"{value:g} {units} {verdict}: {basis}"
                 entries.append(Implausibility(name, reason, impossible))
     entries = sorted([*entries, *_together(ends)], key=attrgetter("impossible"))
-    return list({entry.name: entry for entry in entries}.values())
+    doubts = {}
+    for name, reason, impossible in entries:
+        remarks = [without_unit({name: value}) for value in ends[name]]
+        reason += next(filter(None, remarks), "")
+        doubts[name] = Implausibility(name, reason, impossible)
+    return list(doubts.values())
+
+
+def without_unit(values: Mapping[str, Any]) -> str:
+    """Return the remark of `misread` on the first parameter that needs it, "" where none does.
+
+    values: by name of the parameter, in SI units; words are left out.
+    """
+    for name, value in values.items():
+        if name in _LIMITS and isinstance(value, float | int):
+            _, low, high, *_ = _LIMITS[name]
+            low = max(low, 1e9) if name.endswith("modulus") else low  # in GPa, as metals have it
+            if remark := misread(value, PARAMETERS[name].units, low, high):
+                return remark
+    return ""
 
 
 def _together(ends: Extremes) -> Iterator[Implausibility]:

@@ -276,6 +276,28 @@ def symbol(units: str) -> str:
     return re.sub(r" (\w+)-(\d)", r"/\1\2", units).translate(str.maketrans("23", "²³", "1"))
 
 
+def shown(name: str, value: object, units: str) -> str:
+    """Return a name and its value, in words or in SI `units`: "beam_depth = 27.8 mm"."""
+    number = isinstance(value, float) and units != "1"
+    return f"{name} = {engineering(value, units, 6) if number else repr(value)}"
+
+
+_USUAL = {"m": ("mm",), "Pa": ("MPa", "GPa"), "kg m-3": ("g/cm3",)}
+"""By SI units: those that people leave out."""
+
+
+def misread(value: float, units: str, low: float, high: float) -> str:
+    """Return a remark on a number that would lie from low to high in a usual unit; "" for others.
+
+    All are in SI `units`. A number below 1 is taken to have been stated with its unit.
+    """
+    for usual in _USUAL.get(units, ()) if value >= 1 else ():
+        if low <= si(f"{value:g} {usual}", units) <= high:
+            read = f"{value:g} without a unit is read as {value:g} {symbol(units)}"
+            return f"; {read}: write '{value:g} {usual}' if that is meant"
+    return ""
+
+
 PREFIXED = ("B", "J", "N", "N s", "Pa", "m", "s")
 """Units that a prefix fits."""
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import reprlib
 from collections.abc import Iterable
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Any
+
+from impactlab.model.checks import did_you_mean
 
 _NOTHING = object()
 _LONGEST = 1000  # letters of a reason: a parser may quote as much as the file holds
@@ -85,6 +86,4 @@ def dotted(path: Iterable[object]) -> str:
 def unknown(kind: str, word: object, choices: Iterable[str]) -> str:
     """Return a message about an unknown word, with the nearest choice and all of them."""
     names = list(choices)
-    near = get_close_matches(word[:60], names, n=1) if isinstance(word, str) else []
-    hint = f"did you mean {near[0]!r}? " if near else ""
-    return f"unknown {kind}; {hint}choose from {', '.join(names)}"
+    return f"unknown {kind}{did_you_mean(word, names) or ';'} choose from {', '.join(names)}"

@@ -222,13 +222,24 @@ def _problem(line: Any, data: Any, file: str, keys: Mapping[int, Sequence[str]])
             for like, say in _NOT_HERE.items()
             if re.fullmatch(like, key) and not any(re.fullmatch(like, name) for name in allowed)
         )
-        reason = next(elsewhere, None) or unknown("key", path[-1], allowed)
+        reason = next(elsewhere, None) or _nested(path) or unknown("key", path[-1], allowed)
     elif kind == "value_error":
         reason = str(context["error"])
     else:
         reason = _WORDS[kind].format(**context) if kind in _WORDS else line["msg"]
     shown = {"value": value} if present and not isinstance(value, dict) else {}
     return Problem(file, dotted(path), reason, **shown)
+
+
+def _nested(path: Sequence[Any]) -> str:
+    """Return where a parameter belongs that stands by its full name in a section of its root."""
+    entry = PARAMETERS.get(str(path[-1]))
+    if entry is None or len(path) != 2 or path[0] != entry.path[0]:
+        return ""
+    text = "..."
+    for key in reversed(entry.path[1:]):
+        text = f"{{{key}: {text}}}"
+    return f"is written {text[1:-1]} in the section {path[0]}"
 
 
 def _value_at(data: Any, path: Sequence[Any]) -> tuple[Any, bool, Any]:

@@ -11,6 +11,7 @@ from typing import Any
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, Parameter, Value, with_values
+from impactlab.model.plausibility import without_unit
 
 Base = tuple[Impact, Discretisation]
 
@@ -43,11 +44,12 @@ def refusal(base: Base, values: Mapping[str, Value | None]) -> Refusal | None:
             with_values(*base, group)
         except ValueError as error:
             match = _FIELD_REFUSED.fullmatch(str(error))
+            remark = without_unit(group)
             if match is None:
-                return Refusal(first, str(error), group)
+                return Refusal(first, f"{error}{remark}", group)
             path = (*owner, match[1])
             named = (name for name, entry in PARAMETERS.items() if entry.path == path)
-            return Refusal(next(named, first), match[2], group)
+            return Refusal(next(named, first), f"{match[2]}{remark}", group)
     return None
 
 

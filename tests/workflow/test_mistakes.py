@@ -25,6 +25,11 @@ def test_help_and_version_by_their_usual_names(tmp_path):
     assert impactlab("--version", cwd=tmp_path).stdout == f"impactlab {version('impactlab')}\n"
 
 
+def test_a_misspelt_command_names_the_nearest(tmp_path):
+    told = called("simulat", cwd=tmp_path).stderr
+    assert "there is no command 'simulat'; did you mean 'simulate'?" in told
+
+
 @pytest.mark.parametrize(
     ("args", "words"),
     [
@@ -35,12 +40,20 @@ def test_help_and_version_by_their_usual_names(tmp_path):
         (["simulate", "--velocity", "3 kg"], ["velocity", "3 kg", "m/s"]),
         (["simulate", "--duration", "-1 ms"], ["duration", "-0.001"]),
         (["simulate", "--duration", "1"], ["--duration", "seconds without a unit", "'1 ms'"]),
-        (["simulate", "--velocity", "-3"], ["--velocity = -3.0: must be above zero"]),
+        (["simulate", "--velocity", "-3"], ["--velocity = -3 m/s: must be above zero"]),
         (["simulate", "--velocity", "6 km/s"], ["--velocity", "above the speed of a bar wave"]),
         (["simulate", "--velocity", "fast"], ["a velocity such as '0.99 m/s', or a number in m/s"]),
         (
             ["simulate", "--beam-model", "rigid", "--scheme", "modal"],
             ["ERROR: scheme = 'modal': beam_model = 'rigid' has 'leapfrog' alone"],
+        ),
+        (["simulate", "--contact", "herz"], ["did you mean 'hertz'? choose from hertz, stronge"]),
+        (["simulate", "--base", "papr"], ["--base = 'papr'", "did you mean 'paper'?"]),
+        (["run", "studies/smal.yaml"], ["no such file; did you mean studies/small.yaml?"]),
+        (["simulate", "--contact", "modal"], ["'modal' is a value for --scheme"]),
+        (
+            ["simulate", "--velocity", "1 ms", "--duration", "5 m/s"],
+            ["--velocity and --duration are swapped"],
         ),
         (["run", "studies/tabs.yaml"], ["line 8, column 1", "put spaces in the place of tabs"]),
         (["run", "studies/long.yaml"], ["long.yaml: duration = 1: ", "write '1 ms', or '1 s'"]),

@@ -108,7 +108,9 @@ def test_simulate_sets_any_parameter_of_a_study(tmp_path):
         ("contact=herz", "did you mean 'hertz'?"),
         ("nodes=20.5", "--set nodes = '20.5': expected a whole number"),
         ("beam_depth=20 kg", "--set beam_depth = '20 kg'"),
-        ("beam_depth=-1 mm", "--set beam_depth = -0.001: must be above zero"),
+        ("beam_depth=-1 mm", "--set beam_depth = -1 mm: must be above zero"),
+        ("beam_depth=20", "20 without a unit is read as 20 m: write '20 mm' if that is meant"),
+        ("beam_youngs_modulus=210", "write '210 GPa' if that is meant"),
         ("beam_depth", "expected NAME=VALUE"),
         ("beam_span=1 mm", "beam_depth of the base 'paper': must be below the span"),
         ("element_size=1 mm", "--set element_size: unknown parameter"),
@@ -119,3 +121,11 @@ def test_a_setting_that_cannot_be_is_refused_with_its_name(tmp_path, setting, me
     assert ended.returncode in (1, 2)
     assert message in ended.stderr
     assert "Traceback" not in ended.stderr
+
+
+def test_lengths_that_are_swapped_are_named(tmp_path):
+    swapped = ("--set", "beam_depth=780 mm", "--set", "beam_span=28 mm")
+    told = called(*ONE, *swapped, cwd=tmp_path).stderr
+    assert "--set beam_depth and --set beam_span are swapped" in told
+    own = ("--set", "beam_depth=780 mm", "--set", "beam_span=770 mm")
+    assert "without a unit" not in called(*ONE, *own, cwd=tmp_path).stderr

@@ -15,7 +15,8 @@ from impactlab.analysis.surrogate.polynomials import orthonormal
 from impactlab.analysis.surrogate.validation import half_width
 from impactlab.files import read_netcdf
 from impactlab.methods.distributions import distribution_of
-from impactlab.model.quantities import engineering
+from impactlab.model.checks import did_you_mean
+from impactlab.model.quantities import engineering, misread
 from impactlab.types import Floats
 from impactlab.verdicts import names
 
@@ -224,8 +225,9 @@ class Surrogate:
         if name not in self.parameters:
             held = self.dataset.coords.get(name)
             remark = "" if held is None else f" (it is {held.item()!r} in all of its runs)"
+            near = did_you_mean(name, self.parameters)
             raise ValueError(
-                f"{name}: was not varied in study {self._study}{remark}; {self._takes}"
+                f"{name}: was not varied in study {self._study}{remark}{near or ';'} {self._takes}"
             )
 
     def _checked(self, name: str, value: Any) -> xr.DataArray:
@@ -245,11 +247,12 @@ class Surrogate:
         outside = ~((numbers >= low) & (numbers <= high))
         if outside.any():
             ends = float(numbers[outside][0]), low, high
-            worst, least, most = (engineering(end, self.units(name), 6) for end in ends)
+            units = self.units(name)
+            worst, least, most = (engineering(end, units, 6) for end in ends)
             raise ValueError(
                 f"{name}: {worst} is outside {least} to {most}, where the "
                 f"surrogate of study {self._study} was trained: choose a value within, or "
-                "sample a wider range"
+                f"sample a wider range{misread(ends[0], units, low, high)}"
             )
         return array if labelled else xr.DataArray(array, dims=("point",)[: array.ndim])
 

@@ -17,6 +17,7 @@ from impactlab.methods.sobol import Sobol
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
 from impactlab.model.parameters import PARAMETERS, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
+from impactlab.model.quantities import shown
 from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS
 from impactlab.study.schema.declarations import FunctionStudy, ImpactStudy, StudyFile
 from impactlab.validation.errors import unknown
@@ -155,7 +156,9 @@ def _impacts(file: StudyFile) -> Reasons:
     varied = sampling.bounds()
     if refused := refused_corner((file.impact, grid), varied):
         name = refused.name if refused.name in varied else next(iter(refused.values))
-        values = ", ".join(f"{key} = {value!r}" for key, value in refused.values.items())
+        values = ", ".join(
+            shown(key, value, PARAMETERS[key].units) for key, value in refused.values.items()
+        )
         yield f"sampling.parameters.{name}", f"{values}: {refused.name} {refused.reason}"
     for problem in implausibilities(extremes((file.impact, grid), sampling)):
         if problem.impossible:

@@ -11,6 +11,7 @@ import os
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -72,16 +73,27 @@ def read_text(path: Path) -> str:
                 return raw.decode("utf-8")
             reason = f"is larger than {LARGEST // 1024} KiB: shorten it"
         else:
-            near = (f"{path}.yaml", f"studies/{path.name}", f"studies/{path.name}.yaml")
-            hints = [f"; did you mean {name}?" for name in near if Path(name).is_file()]
-            reason = (
-                "is not a file" if path.exists() else "".join(["there is no such file", *hints[:1]])
-            )
+            hint = "" if path.exists() else _similar_file(path)
+            reason = "is not a file" if path.exists() else f"there is no such file{hint}"
     except OSError as error:
         reason = f"cannot be read: {error.strerror}"
     except UnicodeDecodeError:
         reason = "is not text in UTF-8: save it as such"
     raise StudyError(Problem(str(path), "", reason))
+
+
+def _similar_file(path: Path) -> str:
+    """Return a question that names a file of a similar path, or of a similar name; "" without."""
+    near = (f"{path}.yaml", f"studies/{path.name}", f"studies/{path.name}.yaml")
+    if exact := [name for name in near if Path(name).is_file()]:
+        return f"; did you mean {exact[0]}?"
+    files = {file.stem: file for folder in ("studies", path.parent) for file in _listed(folder)}
+    nearest = get_close_matches(path.stem, files, n=1)
+    return f"; did you mean {files[nearest[0]]}?" if nearest else ""
+
+
+def _listed(folder: str | Path) -> list[Path]:
+    return sorted(Path(folder).glob("*.yaml"))
 
 
 def read_mapping(text: str, file: str) -> dict[str, Any]:

@@ -58,6 +58,8 @@ def test_a_name_is_one_of_the_choices():
     for value in ("c", "", None, "A", ["a"]):
         with pytest.raises(ValueError, match=r"^Owner\.field = .*: must be one of a, b$"):
             one_of("Owner", "field", value, ("a", "b"))
+    with pytest.raises(ValueError, match=r"must be one of hertz, mjg; did you mean 'hertz'\?$"):
+        one_of("Owner", "field", "herz", ("hertz", "mjg"))
 
 
 # Columns in the model's fields: checked by the rules for numbers, run for run

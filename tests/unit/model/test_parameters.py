@@ -98,7 +98,7 @@ def test_all_values_at_once_come_back():
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"velocty": 1.0}, r"unknown parameter 'velocty': choose from velocity, .*courant"),
+        ({"velocty": 1.0}, r"'velocty'; did you mean 'velocity'\? choose from velocity, .*courant"),
         ({"velocity": -1.0}, r"Impact\.velocity = -1\.0"),
         ({"beam_density": 0.0}, r"Material\.density = 0\.0"),
         ({"nodes": 100}, r"Discretisation\.nodes = 100"),

@@ -2,6 +2,9 @@
 
 import warnings
 from dataclasses import replace
+from functools import partial
+
+
 
 import numpy as np
 import pytest
@@ -219,3 +222,14 @@ def test_seconds_without_a_unit_are_refused_as_in_studies(duration):
 def test_an_impossible_value_is_refused_as_in_studies():
     with pytest.raises(ValueError, match="velocity: "):
         il.simulate(il.paper_impact(1e-10), il.Discretisation(nodes=11), duration="1 ms")
+
+
+def test_swapped_arguments_are_named():
+    impact, grid = il.paper_impact(), il.Discretisation(nodes=11)
+    for solve in (il.simulate, partial(il.simulate_many, varied={})):
+        with pytest.raises(ValueError, match="impact and discretisation are swapped"):
+            solve(grid, impact, duration="1 ms")
+        with pytest.raises(ValueError, match="give the impact first"):
+            solve(grid, duration="1 ms")
+        with pytest.raises(ValueError, match=r"simulate\.impact = '5 m/s': must be an Impact"):
+            solve("5 m/s", duration="1 ms")

@@ -95,7 +95,7 @@ WRONG_IN_SAMPLE = [
     ("parameters.velocity.correlated_with", "beam_depth", "or fix all but one"),
 ]
 WRONG_IN_DISTRIBUTION = [
-    ({"distribution": "uniform", "low": 0.02, "high": 0.01}, "beam_depth.high", "low (0.02)"),
+    ({"distribution": "uniform", "low": 0.02, "high": 0.01}, "beam_depth.high", "low (20 mm)"),
     ({"distribution": "uniform", "low": 0, "high": 1}, "beam_depth.low", "must be above zero"),
     (
         {"distribution": "uniform", "low": 0.02, "high": "20 mm"},

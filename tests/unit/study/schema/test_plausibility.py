@@ -21,6 +21,8 @@ IMPOSSIBLE = [
     ("beam_yield_stress", "345 mPa", "mPa is not MPa"),
     ("sphere_yield_stress", "2550 mPa", "mPa is not MPa"),
     ("beam_width", 1e-10, "atoms are"),
+    ("beam_depth", 20, "20 without a unit is read as 20 m: write '20 mm' if that is meant"),
+    ("beam_yield_stress", 345, "345 without a unit is read as 345 Pa: write '345 MPa'"),
     ("sphere_mass", 1e-30, "a speck of dust"),
 ]
 DOUBTED = [
@@ -30,6 +32,8 @@ DOUBTED = [
     ("beam_depth", 0.2, "above a fifth of the span"),
     ("gravity", 9810, "274 is that of the sun"),
     ("sphere_radius", 0.5, "wider than the span"),
+    ("sphere_radius", 33, "33 without a unit is read as 33 m: write '33 mm' if that is meant"),
+    ("beam_density", 7.8, "write '7.8 g/cm3' if that is meant"),
 ]
 
 
