@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Annotated
 
@@ -18,8 +19,12 @@ FILES = {
     "profiles/slurm": "profiles/slurm",
     "studies/velocity.yaml": "studies/velocity.yaml",
     "studies/material.yaml": "studies/material.yaml",
+    "docs/studies.md": "docs/studies.md",  # to which comments of these files point
+    "docs/contact_laws.md": "docs/contact_laws.md",
+    "docs/scaling.md": "docs/scaling.md",
 }
 """The repository's own, which the wheel brings along (see pyproject.toml), and their places."""
+_ELSEWHERE = r"!?\[([^\]]*)\]\((?!https?:|#|studies\.md|scaling\.md|contact_laws\.md)[^)]*\)"
 _ENVIRONMENT = """# For snakemake --software-deployment-method conda
 channels: [conda-forge, nodefaults]
 dependencies: ["python>=3.11,<3.14", pip, pip: ["impactlab[workflow]=={version}"]]
@@ -33,7 +38,7 @@ Needed: `pip install 'impactlab[workflow]'`. Then, in this folder:
 
 A study is a file in `studies/`: copy one, rename it and change it. Both commands resume where they
 were interrupted, and do again what a changed file asks for. `impactlab -h` lists the other
-commands. For clusters: `profiles/slurm/`.
+commands; `docs/studies.md` lists every key. For clusters: `profiles/slurm/`, `docs/scaling.md`.
 """
 
 
@@ -110,6 +115,9 @@ def new(folder: Annotated[Path, typer.Argument(help="New or empty folder.")]) ->
     for name, place in FILES.items():
         (folder / place).parent.mkdir(parents=True, exist_ok=True)
         (copytree if (source / name).is_dir() else copy)(source / name, folder / place)
+    for page in (folder / "docs").glob("*.md"):  # without links to pages that are not copied
+        text = page.read_text(encoding="utf-8")
+        page.write_text(re.sub(_ELSEWHERE, r"\1", text), encoding="utf-8")
     (folder / "environment.yaml").write_text(_ENVIRONMENT.format(version=version("impactlab")))
     (folder / "README.md").write_text(_README)
     install = "" if which("snakemake") else "pip install 'impactlab[workflow]' && "

@@ -92,18 +92,16 @@ class Distribution(Entry):
 
     @model_validator(mode="after")
     def _check_ends(self, info: ValidationInfo) -> Self:
+        low, high, mode = (getattr(self, key, None) for key in ("low", "high", "mode"))
+        if low is None or high is None:
+            return self
         units = info.context["parameter"].units  # type: ignore[index]
-        low, high = (getattr(self, key, None) for key in ("low", "high"))
-        if low is not None and high is not None and high <= low:
+        least, most = engineering(low, units), engineering(high, units)
+        if high <= low:
             fixed = "; for a single value write {distribution: fixed, value: ...}"
-            raise at_key(
-                "high",
-                f"must be above low ({engineering(low, units)}){fixed if high == low else ''}",
-            )
-        mode = getattr(self, "mode", low)
+            raise at_key("high", f"must be above low ({least}){fixed if high == low else ''}")
         if mode is not None and not low <= mode <= high:
-            ends = f"{engineering(low, units)} to {engineering(high, units)}"
-            raise at_key("mode", f"must lie from low to high ({ends})")
+            raise at_key("mode", f"must lie from low to high ({least} to {most})")
         return self
 
     def quantile(self, probability: ArrayLike) -> Floats:

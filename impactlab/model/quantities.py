@@ -278,8 +278,9 @@ def symbol(units: str) -> str:
 
 def shown(name: str, value: object, units: str) -> str:
     """Return a name and its value, in words or in SI `units`: "beam_depth = 27.8 mm"."""
-    number = isinstance(value, float) and units != "1"
-    return f"{name} = {engineering(value, units, 6) if number else repr(value)}"
+    if isinstance(value, float) and units != "1":
+        return f"{name} = {engineering(value, units, 6)}"
+    return f"{name} = {value!r}"
 
 
 _USUAL = {"m": ("mm",), "Pa": ("MPa", "GPa"), "kg m-3": ("g/cm3",)}

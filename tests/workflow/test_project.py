@@ -1,6 +1,7 @@
 """A project made by someone who has the wheel alone."""
 
 import os
+import re
 import subprocess
 import sys
 import tomllib
@@ -21,9 +22,20 @@ def test_a_project_brings_workflow_and_studies(tmp_path):
     for name in ("Snakefile", "workflow/rules/common.smk", "studies/velocity.yaml"):
         assert (tmp_path / "mine" / name).read_bytes() == (ROOT / name).read_bytes()
     assert "snakemake --cores all" in (tmp_path / "mine" / "README.md").read_text()
+    assert_pages_are_there(tmp_path / "mine")
     again = called("new", "mine", cwd=tmp_path)
     assert again.returncode == 1
     assert "mine: is there already" in again.stderr
+
+
+def assert_pages_are_there(project):
+    """Every page that a file of the project names, or links to, is in it."""
+    for path in (path for path in project.rglob("*") if path.is_file()):
+        text = path.read_text()
+        pages = {project / name for name in re.findall(r"docs/\w+\.md", text)}
+        if path.suffix == ".md":
+            pages |= {path.parent / name for name in re.findall(r"\]\(([\w/.-]+)", text)}
+        assert not [page for page in pages if not page.exists() and "http" not in str(page)], path
 
 
 def test_the_wheel_brings_what_a_project_copies():

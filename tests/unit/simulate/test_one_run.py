@@ -4,8 +4,6 @@ import warnings
 from dataclasses import replace
 from functools import partial
 
-
-
 import numpy as np
 import pytest
 import xarray as xr
