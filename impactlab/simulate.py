@@ -28,20 +28,20 @@ from impactlab.model.quantities import Quantity, as_text, in_si
 from impactlab.model.quantities import duration as duration_of
 from impactlab.model.section import fibre_table, integration_rule
 from impactlab.solver import BEAM_MODELS, BENDING_MODELS, SCHEMES
-from impactlab.solver.contact.history import CONTACT
+from impactlab.solver.contact.history import CONTACT, make_pair
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.jit import FOLDER
 from impactlab.solver.kernels import is_extended, kernel_of
 from impactlab.solver.outputs import blank
 from impactlab.solver.section import FibreSection, make_section
+from impactlab.solver.stability import discretise
 from impactlab.variables import (
     HISTORIES,
-    MARKED,
     PROFILES,
     RESPONSES,
+    answer_variables,
     described,
     provenance,
-    status_bits,
 )
 
 if TYPE_CHECKING:
@@ -63,6 +63,7 @@ def simulate(
     *,
     duration: Quantity,
     samples: int = 2001,
+    frames: int = 0,
 ) -> xr.Dataset:
     """Solve one impact.
 
@@ -76,18 +77,21 @@ def simulate(
         Simulated time, in s.
     samples : int, default 2001
         Length of `time`, equally spaced from 0 to the duration.
+    frames : int, default 0
+        Length of `field_time`, on which deflection and strains are kept (0: at the end alone). It
+        takes half as many times as long.
 
     Returns
     -------
     xarray.Dataset
-        Histories on `time`, strains on `x` and `z`, every response as a scalar, `status` and
-        `remarks`, in SI units. A response that the run could not give is NaN, and `status` says
-        why; `remarks` qualifies the others.
+        Histories on `time`, strains on `x` and `z` (with `frames`, also on `field_time`), every
+        response as a scalar, `status` and `remarks`, in SI units. A response that the run could not
+        give is NaN, and `status` says why; `remarks` qualifies the others.
 
     Raises
     ------
     ValueError
-        If duration or samples is not valid, or a value is impossible.
+        If duration, samples or frames is not valid, or a value is impossible.
 
     Warns
     -----
@@ -107,15 +111,21 @@ def simulate(
     seconds = _seconds(duration)
     grid = discretisation or Discretisation()
     samples = integer("simulate", "samples", samples, 2)
+    frames = frames and integer("simulate", "frames", frames, 2)
     _warn(numbers(impact, grid))
-    run = run_dataset(impact, grid, duration=seconds, samples=samples)
+    run = run_dataset(impact, grid, duration=seconds, samples=samples, frames=frames)
     if int(run["status"]):
         _warn_too_short(case_table(impact, grid, duration=seconds), run["status"].values)
     return run
 
 
 def run_dataset(
-    impact: Impact, discretisation: Discretisation, *, duration: float, samples: int = 2001
+    impact: Impact,
+    discretisation: Discretisation,
+    *,
+    duration: float,
+    samples: int = 2001,
+    frames: int = 0,
 ) -> xr.Dataset:
     """Return what `simulate` returns, whatever the values and the duration (in s) may be.
 
@@ -124,8 +134,12 @@ def run_dataset(
     import xarray as xr  # late, here and below: `solve` does without, and it is slow to load
 
     grid = discretisation.resolved([impact.beam_model])
-    answers = solve(case_table(impact, grid, duration=duration), samples=samples, profiles=True)
+    cases = case_table(impact, grid, duration=duration)
+    answers = solve(cases, samples=samples, profiles=True)
     times = {"time": np.linspace(0.0, duration, samples)}
+    if frames:
+        times["field_time"], fields = _fields_over_time(cases, frames)
+        answers |= fields
     dataset = xr.Dataset(
         answer_variables(answers, tuple(RESPONSES), ()),
         coords=times | profile_coordinates(impact, grid),
@@ -133,6 +147,27 @@ def run_dataset(
     )
     fixed = flatten(impact, grid) | {"sphere_mass": impact.sphere.total_mass, "duration": duration}
     return described(dataset.squeeze(drop=True).assign_coords(fixed))
+
+
+def _fields_over_time(
+    cases: np.ndarray[Any, Any], frames: int
+) -> tuple[np.ndarray[Any, Any], dict[str, np.ndarray[Any, Any]]]:
+    """Return times (s) of the one case, and by name the fields, (1, times, ...).
+
+    They are those at the end of runs that stop after as many of its steps: the time loop need not
+    keep any.
+    """
+    case = cases[0]
+    grid, steps = discretise(case, make_pair(case), fibre_section(case))
+    ends = np.unique(np.linspace(0, steps, frames).round())
+    stopped = cases.repeat(ends.size - 1)
+    stopped["duration"][:-1] = ends[1:-1] * grid.dt * (1.0 - 1e-12)  # no step more by round-off
+    fields = {
+        f"{name}_over_time": np.concatenate([np.zeros_like(values[:1]), values])[np.newaxis]
+        for name, values in solve(stopped, profiles=True).items()
+        if name in PROFILES
+    }
+    return np.append(ends[:-1] * grid.dt, case.duration), fields
 
 
 def simulate_many(
@@ -342,26 +377,6 @@ def compile_kernels(
         with ThreadPoolExecutor() as pool:
             list(pool.map(precompile, programs, programs.values()))
     return FOLDER
-
-
-def answer_variables(
-    answers: Mapping[str, Any], responses: tuple[str, ...], dims: tuple[str, ...]
-) -> dict[str, tuple[tuple[str, ...], Any]]:
-    """Return the answers as data variables on `dims` (for one run: none), only these responses.
-
-    answers: arrays of numpy or dask, by name. `status` keeps the bits that matter to these
-    responses; `remarks` are of the run as a whole.
-    """
-    lead = dims or ("run",)
-    bits = (answers["status"] & (status_bits(responses) | MARKED)).astype(np.int32)
-    scalars = {name: (lead, answers[name]) for name in responses}
-    fields = {
-        name: ((*lead, *entry.dims), answers[name])
-        for name, entry in (HISTORIES | PROFILES).items()
-        if name in answers
-    }
-    remarks = answers["remarks"].astype(np.int32)
-    return scalars | fields | {"status": (lead, bits), "remarks": (lead, remarks)}
 
 
 def profile_coordinates(impact: Impact, discretisation: Discretisation) -> dict[str, Any]:

@@ -170,8 +170,20 @@ PROFILES = _table(
     Variable("deflection", ("x",), "m", "deflection at the end of the duration"),
 )
 """Answers along the beam at the end of the run, by name."""
+FIELDS = _table(
+    *(
+        Variable(f"{name}_over_time", ("field_time", *entry.dims), entry.units, long_name)
+        for (name, entry), long_name in zip(
+            PROFILES.items(),
+            ("equivalent plastic strain (PEEQ)", "plastic strain along the beam", "deflection"),
+            strict=True,
+        )
+    )
+)
+"""The same at times in between, by name."""
 COORDINATES = _table(
     Variable("time", ("time",), "s", "time since first touch"),
+    Variable("field_time", ("field_time",), "s", "time of the fields since first touch"),
     Variable("x", ("x",), "m", "distance from the left support"),
     Variable("z", ("z",), "m", "distance below the beam's axis"),
     Variable("duration", (), "s", "simulated time"),
@@ -184,7 +196,7 @@ _OF_WINGS = _table(
         for name, units, long_name, comment in model.variables
     )
 )
-VARIABLES = RESPONSES | _OF_WINGS | HISTORIES | PROFILES | COORDINATES
+VARIABLES = RESPONSES | _OF_WINGS | HISTORIES | PROFILES | FIELDS | COORDINATES
 """Every variable but those of bits (FLAGS) and the varied parameters (for these see PARAMETERS)."""
 
 
@@ -241,6 +253,26 @@ def status_bits(responses: Iterable[str]) -> int:
         if name in RESPONSES and (reason := RESPONSES[name].missing):
             bits |= STATUS_FLAGS[reason][0]
     return bits
+
+
+def answer_variables(
+    answers: Mapping[str, Any], responses: tuple[str, ...], dims: tuple[str, ...]
+) -> dict[str, tuple[tuple[str, ...], Any]]:
+    """Return the answers as data variables on `dims` (for one run: none), only these responses.
+
+    answers: arrays of numpy or dask, by name. `status` keeps the bits that matter to these
+    responses; `remarks` are of the run as a whole.
+    """
+    lead = dims or ("run",)
+    bits = (answers["status"] & (status_bits(responses) | MARKED)).astype(np.int32)
+    scalars = {name: (lead, answers[name]) for name in responses}
+    fields = {
+        name: ((*lead, *entry.dims), answers[name])
+        for name, entry in (HISTORIES | PROFILES | FIELDS).items()
+        if name in answers
+    }
+    remarks = answers["remarks"].astype(np.int32)
+    return scalars | fields | {"status": (lead, bits), "remarks": (lead, remarks)}
 
 
 def reasons(bits: int, flags: Mapping[str, tuple[int, str]] = FAILURES) -> list[str]:

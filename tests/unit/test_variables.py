@@ -17,6 +17,7 @@ from impactlab.variables import (
     COORDINATES,
     FAILED,
     FAILURES,
+    FIELDS,
     HISTORIES,
     MARKED,
     MARKS,
@@ -33,7 +34,7 @@ from impactlab.variables import (
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
-TABLE = RESPONSES | HISTORIES | PROFILES | COORDINATES | PARAMETERS
+TABLE = RESPONSES | HISTORIES | PROFILES | FIELDS | COORDINATES | PARAMETERS
 BITS = {name: bit for name, (bit, _) in STATUS_FLAGS.items()}
 WHOLE_RUN = {"diverged", "energy_out_of_balance", "stopped"}
 
@@ -47,7 +48,7 @@ def test_units_are_udunits_and_names_are_spelled_out(name):
 
 
 def test_no_name_is_used_twice():
-    tables = (RESPONSES, HISTORIES, PROFILES, COORDINATES, PARAMETERS)
+    tables = (RESPONSES, HISTORIES, PROFILES, FIELDS, COORDINATES, PARAMETERS)
     assert sum(map(len, tables)) == len(TABLE)
     # an unknown variable is an error
     with pytest.raises(KeyError, match="contact_farce"):

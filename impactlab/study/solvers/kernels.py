@@ -14,17 +14,20 @@ from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
-from impactlab.simulate import (
-    answer_variables,
-    compile_kernels,
-    profile_coordinates,
-    solve,
-)
+from impactlab.simulate import compile_kernels, profile_coordinates, solve
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.shard import Array
 from impactlab.study.solvers import Solver, flattened, run_shape
 from impactlab.study.store import OutputSpec
-from impactlab.variables import HISTORIES, PROFILES, RESPONSES, described, provenance, status_bits
+from impactlab.variables import (
+    HISTORIES,
+    PROFILES,
+    RESPONSES,
+    answer_variables,
+    described,
+    provenance,
+    status_bits,
+)
 
 _OF_ANY_RUN = 6000.0  # cost of a run beside its node-steps: about 20 µs
 

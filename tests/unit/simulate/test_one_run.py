@@ -64,7 +64,7 @@ def test_every_variable_is_there_on_its_dimensions(run):
     }
     names = {*PARAMETERS, "duration"} - {*SIZES}  # of the 3-D model alone
     assert {name: run[name].item() for name in names} == expected
-    assert set(run.coords) == {*names, *COORDINATES} - {"run"}
+    assert set(run.coords) == {*names, *COORDINATES} - {"run", "field_time"}
 
 
 def test_default_discretisation():
