@@ -74,6 +74,8 @@ _PRIVATE = (
 _SUFFIX = ".kernel"
 _DIGEST = hashlib.sha256().digest_size
 _FOLDER = re.compile(r"kernels-[0-9a-f]{16}(-[0-9a-f]{8})?(\.[0-9a-f]{32})?")
+_QUIET = 600.0
+"""Seconds for which further kernels are compiled without a message, by any process."""
 _UNUSED = 30 * 24 * 3600.0
 """Seconds after which the folder of other sources, or of another machine, is taken away."""
 
@@ -306,6 +308,16 @@ if _COMPILES in os.environ and not _IS_PLAIN:
     _emit_only_called()
 
 
+def _announce(folder: Path) -> None:
+    """Say that kernels are compiled, unless a process has just said so."""
+    said = folder / f"compiling{_SUFFIX}s"  # removed with them
+    with FileLock(folder / "compiling.lock"):
+        silent = said.exists() and time.time() - said.stat().st_mtime < _QUIET
+        said.touch()
+    if not silent:
+        print("impactlab: compiling kernels, once, about 15 s each", file=sys.stderr, flush=True)
+
+
 @functools.cache
 def precompile(kernel: Any, program: str) -> None:
     """Compile `kernel` in another process, unless it is in the cache.
@@ -323,7 +335,7 @@ def precompile(kernel: Any, program: str) -> None:
         with FileLock(cache.folder / f"{cache.name}.lock"):
             if any(_read(path) for path in cache.folder.glob(cache.files.format("*"))):
                 return
-            print("impactlab: compiling kernels, once, about 15 s", file=sys.stderr, flush=True)
+            _announce(cache.folder)
             done = subprocess.run(
                 [sys.executable, "-c", f"import gc; gc.disable()\n{program}"],  # 5 % of the time
                 env=os.environ | {_COMPILES: cache.name, "PYTHONPATH": paths},

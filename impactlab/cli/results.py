@@ -77,13 +77,12 @@ def predict(
 def figures(stored: StoredFiles, output: Pictures = None) -> None:
     """Draw all figures that apply to a study's results or findings."""
     from impactlab.figures.labels import counted
-    from impactlab.report.answer import answers
     from impactlab.report.results import open_stored
 
     folder = output or stored[0].with_name("figures")
     with open_stored(stored) as (kind, datasets):
         count = sum(path.suffix == ".svg" for path in kind.draw(*datasets, folder))
-        print(f"{folder}: {counted(count, 'figure')}. {answers(*datasets)[0]}")
+        print(f"{folder}: {counted(count, 'figure')}")
 
 
 def report(
@@ -97,7 +96,6 @@ def report(
 
     The provenance is ro-crate-metadata.json, beside the runs.
     """
-    from impactlab.report.answer import answers
     from impactlab.report.crate import write_crate
     from impactlab.report.results import open_stored
 
@@ -106,7 +104,7 @@ def report(
     with open_stored(stored) as (kind, datasets):
         kind.write(*datasets, pictures, path)
         write_crate(datasets[0], stored[0].parent, pictures, path)
-        print(f"{path}: {answers(*datasets)[0]}")
+        print(path)
 
 
 def export(

@@ -224,6 +224,7 @@ def verify(
     findings.nc, the command prints its verdict again.
     """
     from impactlab.files import read_netcdf, write_netcdf
+    from impactlab.report.answer import answers
     from impactlab.report.console import print_outcomes
     from impactlab.study import steps
     from impactlab.study.ownership import check_unclaimed, study_file
@@ -238,8 +239,9 @@ def verify(
         if not replace:
             check_unclaimed(declared, path)
         file = study_file(declared, path.parent)
-        findings = steps.check(declared).assign_attrs(study_file=file)
+        findings = steps.check(declared).assign_attrs(study_file=file, content="findings")
         write_netcdf(findings, path, "findings")
+        print(f"{path}: {answers(findings)[0]}")
     outcomes = unpacked(findings)
     print_outcomes(outcomes)
     if failure := steps.failure(outcomes):

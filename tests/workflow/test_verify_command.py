@@ -8,6 +8,7 @@ import xarray as xr
 from command_line import CHECKS, here
 from command_line import done as impactlab
 
+from impactlab.report.answer import answers
 from impactlab.verification.catalogue import CATALOGUE
 from impactlab.verification.finding import Check, Comparisons, Finding
 
@@ -23,6 +24,7 @@ def test_checks_from_the_file_to_the_index(folder):
     assert "checks/report.html" in (folder / "results" / "index.html").read_text()
     assert "Verification passed" in findings.with_name("report.html").read_text()
     stored = xr.load_dataset(findings)
+    assert said.count(answers(stored)[0]) == 1
     assert stored["ours"].values == pytest.approx(stored["independent"].values, rel=1e-4)
 
 

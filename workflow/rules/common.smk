@@ -11,25 +11,40 @@ from pathlib import Path
 from snakemake.exceptions import WorkflowError
 from snakemake_interface_logger_plugins.common import LogEvent
 
+include: "pace.smk"
+
 
 class StepLines(logging.Handler):
-    """Prints a line as each step begins: its study, and how long the rest takes at this pace."""
-
-    def __init__(self):
-        super().__init__()
-        self.begun, self.left = time.monotonic(), ""
+    """Prints a line as each step begins: its study, and how long the rest takes."""
 
     def emit(self, record):
-        event = getattr(record, "event", None)
-        if event == LogEvent.PROGRESS:
-            minutes = (time.monotonic() - self.begun) / 60 * (record.total / record.done - 1)
-            self.left = f"{record.done} of {record.total} done, about {minutes:.1f} min left; "
+        event, now = getattr(record, "event", None), time.monotonic()
+        if event == LogEvent.RUN_INFO:
+            counts = {rule: n for rule, n in record.stats.items() if rule not in ("all", "total")}
+            self.total, self.pace = sum(counts.values()), Pace(counts, recorded_seconds(), now)
+        elif event == LogEvent.JOB_FINISHED:
+            self.pace.finish(record.job_id, now)
         elif event == LogEvent.JOB_INFO and record.rule_name != "all" and not workflow.dryrun:
-            study = record.wildcards.get("study", "all studies")
-            print(f"{self.left}{study}: {record.rule_name}", file=sys.stderr, flush=True)
+            study, left = record.wildcards.get("study", ""), self.pace.left(now)
+            done = f"{len(self.pace.ratios)} of {self.total} done, " if self.pace.ratios else ""
+            left = "" if left is None else f"about {duration(left)} left"
+            self.pace.start(record.jobid, record.rule_name, study, now)
+            begun = "; ".join(filter(None, [f"{done}{left}".rstrip(", "), study or "all studies"]))
+            print(f"{begun}: {record.rule_name}", file=sys.stderr, flush=True)
         elif record.levelno >= logging.ERROR:
             where = ", see " + ", ".join(record.log) if getattr(record, "log", None) else ""
             print(f"{record.getMessage()}{where}", file=sys.stderr, flush=True)
+
+
+def recorded_seconds():
+    """Return what steps took in an earlier run, by rule and study."""
+    files = [path for study in STUDIES for path in Path("results", study).glob("benchmarks/*.tsv")]
+    return {(path.stem, path.parts[1]): first_number(path) for path in files}
+
+
+def first_number(benchmark):
+    """Return the seconds in a benchmark file of Snakemake."""
+    return float(benchmark.read_text().splitlines()[1].split()[0])
 
 
 if workflow.is_main_process:

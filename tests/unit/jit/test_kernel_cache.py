@@ -11,6 +11,7 @@ from pathlib import Path
 import numba
 import pytest
 
+import impactlab.jit
 from impactlab.jit import _read
 from impactlab.solver import jit
 
@@ -195,6 +196,19 @@ def test_every_process_runs_the_same_machine_code(tmp_path):
     assert str(file.parent) in errors
     out.append(again.split())
     assert out == [[out[0][0], "1"]] * 4
+
+
+def test_compiling_is_announced_once_by_all_processes(tmp_path, capsys, monkeypatch):
+    """Again after the kernels are gone, or after a while."""
+    for _ in range(7):
+        impactlab.jit._announce(tmp_path)
+    assert capsys.readouterr().err.count("compiling kernels") == 1
+    impactlab.jit.discard(tmp_path)
+    impactlab.jit._announce(tmp_path)
+    assert capsys.readouterr().err.count("compiling kernels") == 1
+    monkeypatch.setattr(impactlab.jit, "_QUIET", 0.0)
+    impactlab.jit._announce(tmp_path)
+    assert capsys.readouterr().err.count("compiling kernels") == 1
 
 
 def test_a_setting_that_numba_refuses_is_named():
