@@ -77,19 +77,22 @@ FIGURES = (
 def write_paper(folders: Sequence[Path], output: Path) -> None:
     """Draw the figures as figure_05a and so on, judge the statements, write both to `output`.
 
-    folders: runs.nc and analysis.nc of one study each, under the study's name. Raises OSError
-    where a file cannot be read or written.
+    folders: runs.nc of one study each, which statements need, and analysis.nc, which figures need,
+    under the study's name. Raises OSError where a file cannot be read or written.
     """
-    stored = {}
+    runs, stored = {}, {}
     for folder in folders:
         paths = folder / "runs.nc", folder / "analysis.nc"
-        if all(path.exists() for path in paths):
-            solved, analysis = read_netcdf(paths[0], "runs"), read_netcdf(paths[1], "analysis")
-            check_source(analysis, paths[1], solved, paths[0])
-            stored[folder.name] = solved, analysis
-        else:
-            log.warning("%s holds no runs.nc with an analysis.nc: it is left out", folder)
-    runs = {name: pair[0] for name, pair in stored.items()}
+        if not paths[0].exists():
+            log.warning("%s holds no runs.nc: it is left out", folder)
+            continue
+        runs[folder.name] = solved = read_netcdf(paths[0], "runs")
+        if not paths[1].exists():
+            log.warning("%s holds no analysis.nc: its figures are left out", folder)
+            continue
+        analysis = read_netcdf(paths[1], "analysis")
+        check_source(analysis, paths[1], solved, paths[0])
+        stored[folder.name] = solved, analysis
     judged = judge_all(runs)
     groups = {kind: [entry for entry in judged if entry[0].kind is kind] for kind in Subject}
     statements = groups[Subject.STATEMENT]

@@ -41,6 +41,19 @@ def test_page_tables_and_figures(velocity_study, tmp_path):
     assert span["units"] == "m"
 
 
+def test_statements_need_no_analysis(velocity_study, tmp_path, caplog):
+    path = tmp_path / "fig08" / "runs.nc"
+    write_netcdf(velocity_study[0].drop_dims(["time", "x"]), path, "runs")
+    write_paper([path.parent], tmp_path / "paper")
+    assert "fig08 holds no analysis.nc: its figures are left out" in caplog.text
+    assert not list((tmp_path / "paper" / "figures").glob("figure_08*"))
+    falls = [
+        row for row in _rows(tmp_path / "paper/claims.csv") if row["claim"] == "duration_falls"
+    ]
+    assert falls
+    assert not any("has not been solved" in row["why"] for row in falls)
+
+
 def test_a_statement_is_summed_up_from_its_cases():
     verdicts = {
         (Ruling.HOLDS, Ruling.READING): "holds",
