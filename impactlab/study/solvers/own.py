@@ -7,11 +7,13 @@ what they need with each batch.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from hashlib import sha256
 from numbers import Real
+from threading import Lock
 from typing import Any
 
 import cloudpickle
@@ -44,8 +46,8 @@ class Function:
         returns a number, NaN where there is none.
     units : str or mapping of str to str, optional
         SI unit of the result, as "N" or "m s-1", or of each response by name where a model returns
-        several; "1" by default. A result that is an array with a unit needs it, because arithmetic
-        with arrays does not keep track of units.
+        several. By default an array of xarray keeps its attribute `units`, and a number has "1".
+        Arithmetic with arrays drops units, so its results need one.
     long_name : str, optional
         Name for labels.
     version : str, optional
@@ -65,7 +67,7 @@ class Function:
     version: str | None = None
 
     def unit(self, response: str) -> str:
-        """Return the unit of a response.
+        """Return the stated unit of a response.
 
         Parameters
         ----------
@@ -75,33 +77,10 @@ class Function:
         Returns
         -------
         str
-            The stated SI unit, else "1".
+            SI unit; empty where none is stated.
         """
         stated = self.units.get(response) if isinstance(self.units, Mapping) else self.units
-        return stated or "1"
-
-    def check_unit(self, response: str, value: Any) -> None:
-        """Raise an error where a value has a unit, and none is stated.
-
-        Parameters
-        ----------
-        response : str
-            Name of the response.
-        value : float or xarray.DataArray
-            Result of the function.
-
-        Raises
-        ------
-        ValueError
-            If the attribute `units` of the value is not stated in `units`.
-        """
-        units = getattr(value, "attrs", {}).get("units", "1")
-        stated = response in self.units if isinstance(self.units, Mapping) else self.units
-        if units != "1" and not stated:
-            raise ValueError(
-                f"{response}: gave an array in {units!r}, which arithmetic passes on unchanged: "
-                f"state its unit, il.Function(..., units={units!r})"
-            )
+        return stated or ""
 
 
 @dataclass(frozen=True)
@@ -116,11 +95,20 @@ class Task:
     parameters: tuple[str, ...] = ()
     responses: tuple[str, ...] = ()
 
+    @property
+    def unit_columns(self) -> list[str]:
+        """Return the columns for units that are not stated."""
+        functions = {name: self.functions[""] for name in self.responses} or self.functions
+        return [_UNIT + name for name, function in functions.items() if not function.unit(name)]
+
 
 KNOWN: dict[str, Function] = {}
 """Functions that studies of this process were built with, by their keys."""
 TASKS: dict[str, Task] = {}
 """The same for solvers, by their names."""
+_UNIT = "unit of "
+"""Prefix of the column with the units that a function returned; no answer can have such a name."""
+_UNITS = np.dtype("U64")  # the same in every shard
 
 
 def register(name: str, function: Function | Callable[..., Any]) -> str:
@@ -155,7 +143,7 @@ def solver_name(study: AnyStudy) -> str:
     else:
         functions = {name: KNOWN[key] for name, key in study.python.items()}
         task = Task(functions, study.store.samples)
-    form = f"{keys} {task.samples} {task.parameters} {task.responses}"
+    form = f"{keys} {task.samples} {task.parameters} {task.responses} with units"
     name = f"own {sha256(form.encode()).hexdigest()}"
     TASKS[name] = task
     return name
@@ -171,7 +159,7 @@ def solver(name: str) -> Solver:
     if "" in task.functions:
         return Solver(
             version=name,
-            columns=lambda design: (*task.responses, "status"),
+            columns=lambda design: (*task.responses, "status", *task.unit_columns),
             cases=partial(_points, task),
             cost=lambda cases: np.full(cases.size, _COST),
             values=lambda cases, output: len(task.responses) + 1,
@@ -182,6 +170,7 @@ def solver(name: str) -> Solver:
     return replace(
         IMPACT,
         version=f"{IMPACT.version} {name}",
+        columns=lambda design: (*IMPACT.columns(design), *task.unit_columns),
         cost=lambda cases: IMPACT.cost(cases) + _COST,
         solve=partial(_responses, task),
         labelled=partial(_labelled_responses, task),
@@ -189,10 +178,37 @@ def solver(name: str) -> Solver:
     )
 
 
+_CALLS = ExitStack(), Lock()
+_calls = 0
+
+
+@contextmanager
+def _units_dropped() -> Iterator[None]:
+    """Let arithmetic of xarray drop units during a call; calls may overlap in threads.
+
+    xarray passes on the unit of N * m/s as N: a unit that is left afterwards is that of a variable
+    as it is, or one that the function has set.
+    """
+    global _calls
+    stack, lock = _CALLS
+    with lock:
+        if not _calls:
+            stack.enter_context(xr.set_options(keep_attrs=False))
+        _calls += 1
+    try:
+        yield
+    finally:
+        with lock:
+            _calls -= 1
+            if not _calls:
+                stack.close()
+
+
 def _number(function: Function, name: str, /, *args: Any, **values: Any) -> Any:
     """Return what a function gives. Raises ValueError where it raises."""
     try:
-        return function.call(*args, **values)
+        with _units_dropped():
+            return function.call(*args, **values)
     except Exception as error:
         where = f" at {values}" if values else ""
         raise ValueError(f"{name}{where}: raised {type(error).__name__}: {error}") from error
@@ -203,6 +219,18 @@ def _real(value: Any, name: str) -> float:
     if not isinstance(plain, int | float | Real) or type(plain) is bool:
         raise ValueError(f"{name}: gave {str(value)[:80]!r}, not one real number")
     return float(plain)
+
+
+def _unit(value: Any, name: str) -> str:
+    """Return the unit of an array of xarray, "1" for a number, "" for NaN, which has any unit."""
+    if not isinstance(value, xr.DataArray):
+        return "" if np.isnan(value) else "1"
+    if "units" not in value.attrs:
+        raise ValueError(
+            f"{name}: gave an array without a unit, which arithmetic drops: "
+            'state its unit, il.Function(..., units="N")'
+        )
+    return str(value.attrs["units"])
 
 
 def _responses(task: Task, cases: Array, output: OutputSpec) -> Columns:
@@ -225,19 +253,41 @@ def _responses(task: Task, cases: Array, output: OutputSpec) -> Columns:
         for name, function in task.functions.items():
             value = _number(function, f"responses.{name}", run)
             row[name] = _real(value, f"responses.{name}")
-            function.check_unit(name, value)
+            if not function.unit(name):
+                row[_UNIT + name] = _unit(value, f"responses.{name}")
         rows.append(row)
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    kinds = dict.fromkeys(task.unit_columns, _UNITS)
+    return {name: np.array([row[name] for row in rows], kinds.get(name)) for name in rows[0]}
 
 
-def _attributes(function: Function, name: str) -> dict[str, str]:
-    return {"long_name": function.long_name or name.replace("_", " "), "units": function.unit(name)}
+def _units_apart(answers: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
+    """Return the answers without the columns of units, and the one unit of each such response.
+
+    Raises ValueError where runs have different units.
+    """
+    columns = {name: values for name, values in answers.items() if not name.startswith(_UNIT)}
+    units = {}
+    for name in columns:
+        if (column := answers.get(_UNIT + name)) is not None:
+            names = sorted({*np.unique(np.asarray(column)).tolist()} - {""})
+            if len(names) > 1:
+                raise ValueError(
+                    f"{name}: is in {' and in '.join(names)}, depending on the run: return one unit"
+                )
+            units[name] = names[0] if names else "1"
+    return columns, units
+
+
+def _attributes(function: Function, name: str, units: Mapping[str, str]) -> dict[str, str]:
+    long_name = function.long_name or name.replace("_", " ")
+    return {"long_name": long_name, "units": function.unit(name) or units[name]}
 
 
 def _labelled_responses(task: Task, design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
-    runs = IMPACT.labelled(design, answers)
+    columns, units = _units_apart(answers)
+    runs = IMPACT.labelled(design, columns)
     for name, function in task.functions.items():
-        runs[name].attrs = _attributes(function, name)
+        runs[name].attrs = _attributes(function, name, units)
     return runs
 
 
@@ -259,6 +309,7 @@ def _points(task: Task, design: xr.Dataset, runs: Array) -> Array:
 def _model(task: Task, cases: Array, output: OutputSpec) -> Columns:
     """Return the answers of the model, one row per case: a number, or a mapping of numbers."""
     columns: Columns = {name: np.empty(cases.size) for name in task.responses}
+    units: dict[str, list[str]] = {name: [] for name in task.unit_columns}
     for row, case in enumerate(cases):
         values = {name: case[name].item() for name in task.parameters}
         answer = _number(task.functions[""], "function", **values)
@@ -270,11 +321,15 @@ def _model(task: Task, cases: Array, output: OutputSpec) -> Columns:
                 f"function: gave {names}, but `responses` of the study are {responses}"
             )
         for name in task.responses:
-            columns[name][row] = np.float64(_real(answer[name], f"function: {name}"))
-            task.functions[""].check_unit(name, answer[name])
+            columns[name][row] = _real(answer[name], f"function: {name}")
+            if _UNIT + name in units:
+                units[_UNIT + name].append(_unit(answer[name], f"function: {name}"))
+    columns |= {name: np.array(column, _UNITS) for name, column in units.items()}
     return columns | {"status": np.zeros(cases.size, dtype=np.int32)}
 
 
 def _labelled_model(task: Task, design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
-    attrs = {name: _attributes(task.functions[""], name) for name in task.responses}
-    return on_design(design, answers, attrs)
+    columns, units = _units_apart(answers)
+    function = task.functions[""]
+    attrs = {name: _attributes(function, name, units) for name in task.responses}
+    return on_design(design, columns, attrs)
