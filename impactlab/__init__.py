@@ -32,7 +32,7 @@ What the runs say
     analyse         convergence and sensitivity, with verdicts
     answers         the same in sentences
     table           runs or indices as a pandas DataFrame
-    plot            figures: plot.run, plot.response, plot.sobol, ...
+    plot            figures: plot.run, plot.response, plot.sobol, plot.animate, ...
     load_surrogate  predictions without solving
     compare         measurements beside the runs, with verdicts
     calibrate       parameters and contact laws from measurements

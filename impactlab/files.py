@@ -36,6 +36,8 @@ KINDS = {
     ".png": "PNG",
     ".svg": "SVG",
     ".pdf": "PDF",
+    ".mp4": "MP4",
+    ".gif": "GIF",
 }
 """Kinds of files that are written, or that people expect to be, by their suffix."""
 

@@ -7,6 +7,7 @@ indices of FAST are Sobol indices.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -17,6 +18,7 @@ from impactlab.analysis.measurements import compared
 from impactlab.analysis.regimes import of_runs
 from impactlab.figures import (
     access,
+    animation,
     catalogue,
     grids,
     indices,
@@ -33,6 +35,7 @@ from impactlab.study.schema.measurement_files import read_measurements
 from impactlab.validation.errors import unknown
 
 __all__ = [
+    "animate",
     "delta",
     "figure",
     "morris",
@@ -166,6 +169,45 @@ def run(data: xr.Dataset) -> Any:
         raise ValueError("run: expected the dataset of one impact, from il.simulate")
     with style.interactive():
         return np.array(single_runs.picture(data).axes)
+
+
+def animate(
+    data: xr.Dataset, path: str | Path | None = None, *, frames: int = 200
+) -> animation.Animation:
+    """Animate an impact: beam and sphere, plastic zone through depth and length, contact force.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Dataset of one impact, or one run of a study; without fields on `field_time` it is solved
+        once more.
+    path : str or pathlib.Path, optional
+        File to write, see `Animation.save`.
+    frames : int, default 200
+        Number of frames, where `data` has no fields on `field_time`.
+
+    Returns
+    -------
+    Animation
+        The animation, which notebooks play.
+
+    Raises
+    ------
+    ValueError
+        If the dataset holds several impacts, or none of a beam model, or for another suffix.
+    OSError
+        If an MP4 file is asked for without ffmpeg.
+
+    Examples
+    --------
+    >>> run = il.simulate(il.paper_impact(), il.Discretisation(nodes=41), duration="6 ms")
+    >>> il.plot.animate(run, frames=10).frames
+    10
+    """
+    moving = animation.animation(animation.with_fields(data, frames))
+    if path is not None:
+        moving.save(path)
+    return moving
 
 
 def sobol_over_time(analysis: xr.Dataset) -> Any:

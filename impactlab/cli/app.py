@@ -29,6 +29,7 @@ _COMMANDS = {
     "calibrate": "impactlab.cli.solve:calibrate",
     "verify": "impactlab.cli.solve:verify",
     "figures": "impactlab.cli.results:figures",
+    "animate": "impactlab.cli.animate:animate",
     "report": "impactlab.cli.results:report",
     "export": "impactlab.cli.results:export",
     "index": "impactlab.cli.results:index",

@@ -12,6 +12,7 @@ import impactlab as il
 from impactlab.validation.stated import Stated
 
 RETURNED = {
+    "Animation": "impactlab.figures.animation",
     "Estimate": "impactlab.study.estimate",
     "Problem": "impactlab.validation.errors",
     "Rectangle": "impactlab.model.section",
