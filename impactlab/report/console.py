@@ -62,7 +62,9 @@ def print_predictions(predicted: Any) -> None:
             error = engineering(attrs["error"], attrs["units"], digits=2)
             numbers = (engineering(value, attrs["units"]), error, f"{attrs['q2']:.4f}")
         if verdict == "imprecise":
-            verdict += f": the error is {100 * attrs['error'] / abs(value):.0f} % of the prediction"
+            share = attrs["error"] / abs(value) if value else math.inf
+            percent = f"the error is {100 * share:.0f} % of the prediction"
+            verdict += f": {'zero lies within the error' if share > 1 else percent}"
         if verdict == "extrapolated":
             verdict += ": farther out than any run tested on"
         rows.append((str(name), *numbers, verdict))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from dataclasses import asdict
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from pathlib import Path
@@ -21,6 +22,13 @@ from impactlab.model.quantities import PREFIXED, symbol
 from impactlab.report.page import described, write_page
 
 _POSITIONS = 200  # positions of a slider, about
+_OPENINGS = (
+    0.5,
+    0.6,
+    0.4,
+    0.7,
+    0.3,
+)  # quantiles at which the page may open, the first of them best
 
 
 def write_explorer(runs: xr.Dataset, analysis: xr.Dataset, report: Path) -> str:
@@ -58,8 +66,15 @@ def write_explorer(runs: xr.Dataset, analysis: xr.Dataset, report: Path) -> str:
         ],
         good=SurrogateVerdict.USABLE.meaning,
         imprecise=IMPRECISE,
+        surrogate=shlex.quote(_from_root(report.with_name("surrogate.nc"))),
     )
     return path.name
+
+
+def _from_root(path: Path) -> str:
+    """Return a path as commands take it in the project's folder, the working directory."""
+    absolute, root = path.resolve(), Path.cwd()
+    return str(absolute.relative_to(root) if absolute.is_relative_to(root) else absolute)
 
 
 def _parameter(column: xr.DataArray, entry: xr.Dataset) -> dict[str, Any]:
@@ -67,12 +82,15 @@ def _parameter(column: xr.DataArray, entry: xr.Dataset) -> dict[str, Any]:
 
     si: what a value there is multiplied by for the polynomials, which take SI units.
     """
-    unit, kind = labels.display(column), orthonormal(distribution_of(column.attrs))
+    unit, distribution = labels.display(column), distribution_of(column.attrs)
+    kind = orthonormal(distribution)
     lowest, highest = (_short(entry[key].item() * unit.scale) for key in ("lowest", "highest"))
     # the ends of the range in few digits, rounded so that they do not leave it
     digits = 6 if highest - lowest > 1e-3 * max(abs(lowest), abs(highest)) else 12
     lowest = float(Context(digits, ROUND_CEILING).create_decimal(repr(lowest)))
     highest = float(Context(digits, ROUND_FLOOR).create_decimal(repr(highest)))
+    positions = _positions(lowest, highest, kind.logarithmic)
+    openings = distribution.quantile(np.array(_OPENINGS)) * unit.scale
     return {
         "lowest": lowest,
         "highest": highest,
@@ -83,7 +101,8 @@ def _parameter(column: xr.DataArray, entry: xr.Dataset) -> dict[str, Any]:
         "si": 1 / unit.scale,
         "polynomials": asdict(kind),
         "logarithmic": kind.logarithmic,
-        "values": _positions(lowest, highest, kind.logarithmic),
+        "values": positions,
+        "openings": [min(positions, key=lambda x: abs(x - opening)) for opening in openings],
     }
 
 

@@ -106,29 +106,67 @@ function update() {
     const { value, error, extrapolated, doubtful } = predict(response, polynomials);
     output.textContent = `${engineering(value, response, 4)} ± ${engineering(error, response, 2)}`;
     if (extrapolated) output.textContent += ", extrapolated: farther out than any run tested on";
+    else if (error > Math.abs(value)) output.textContent += ", imprecise: zero lies within the error";
     else if (doubtful)
       output.textContent += `, imprecise: the error is ${((100 * error) / Math.abs(value)).toFixed(0)} % of the prediction`;
     drawing.innerHTML = plot(response, along, moved, values[at], value);
     drawing.setAttribute("aria-label", `${response.label} against ${along.label}: ${output.textContent} at ${values[at]} ${along.unit}`);
   }
   const given = parameters.map((each, n) => ` ${each.name}=` + (each.unit ? `'${values[n]} ${each.unit}'` : values[n]));
-  element("command").textContent = known ? `impactlab predict surrogate.nc${given.join("")}` : "";
+  element("command").textContent = known ? `impactlab predict ${surrogate}${given.join("")}` : "";
+  element("copy").textContent = "Copy";
 }
+
+// Where the page opens: at the medians, or off them where more predictions are precise.
+function opening() {
+  const doubts = (values) => {
+    const polynomials = parameters.map((each, n) => polynomial(each, values[n]));
+    return responses.filter((each) => predict(each, polynomials).doubtful).length;
+  };
+  const places = parameters[0].openings.map((_, n) => parameters.map((each) => each.openings[n]));
+  return places.reduce((best, each) => (doubts(each) < doubts(best) ? each : best));
+}
+const start = opening();
+
+function move(parameter, value) {
+  const nearest = parameter.values.findIndex((each) => each >= Number(value));
+  const [field, slider] = [element(parameter.name), element(`${parameter.name}-slider`)];
+  if (field.value !== String(value)) field.value = value; // else it is being typed
+  if (!Number.isNaN(read(parameter))) slider.value = nearest;
+  slider.setAttribute("aria-valuetext", `${value} ${parameter.unit}`);
+}
+
+// The address holds the values, so that they survive a reload and can be sent to others.
+function recall() {
+  const state = new URLSearchParams(location.hash.slice(1));
+  parameters.forEach((each, n) => move(each, state.get(each.name) ?? start[n]));
+  element("against").value = Math.max(0, parameters.findIndex((each) => each.name === state.get("against")));
+  update();
+}
+let waiting;
+function remember() {
+  const state = new URLSearchParams(parameters.map((each) => [each.name, element(each.name).value]));
+  state.set("against", parameters[element("against").value].name);
+  clearTimeout(waiting); // browsers refuse a new address at every move of a slider
+  waiting = setTimeout(() => history.replaceState(null, "", `#${state}`), 200);
+}
+const changed = () => (update(), remember());
 
 for (const parameter of parameters) {
   const [field, slider] = [element(parameter.name), element(`${parameter.name}-slider`)];
-  const follow = () => {
-    field.value = parameter.values[slider.value];
-    slider.setAttribute("aria-valuetext", `${field.value} ${parameter.unit}`);
-  };
-  slider.addEventListener("input", () => (follow(), update()));
-  field.addEventListener("input", () => {
-    const nearest = parameter.values.findIndex((each) => each >= Number(field.value));
-    if (!Number.isNaN(read(parameter))) slider.value = nearest;
-    update();
-  });
-  slider.value = Math.floor(parameter.values.length / 2);
-  follow();
+  slider.addEventListener("input", () => (move(parameter, parameter.values[slider.value]), changed()));
+  field.addEventListener("input", () => (move(parameter, field.value), changed()));
 }
-element("against").addEventListener("input", update);
-update();
+element("against").addEventListener("input", changed);
+element("reset").addEventListener("click", () => {
+  clearTimeout(waiting);
+  history.replaceState(null, "", "#");
+  recall();
+});
+element("copy").addEventListener("click", async () => {
+  getSelection().selectAllChildren(element("command")); // to copy by hand, where the browser refuses
+  await navigator.clipboard.writeText(element("command").textContent);
+  element("copy").textContent = "Copied";
+});
+addEventListener("hashchange", () => location.hash.includes("=") && recall());
+recall();

@@ -93,7 +93,7 @@ def shown(page, response):
 def predicted(page, folder):
     """Cells of the table that the command on the page prints, by response."""
     command = shlex.split(page.locator("#command").inner_text())
-    assert command[:3] == ["impactlab", "predict", "surrogate.nc"]
+    assert command[:3] == ["impactlab", "predict", str(folder / "surrogate.nc")]
     table = command_line.done(*command[1:], cwd=folder).stdout
     rows = [[cell.strip() for cell in line.split("│")[1:-1]] for line in table.splitlines()]
     return {row[0]: row[1:] for row in rows if row}
@@ -114,6 +114,56 @@ def test_moved_sliders_show_what_predict_prints(explorer, folder, monkeypatch):
             assert f"Q² = {q2}" in explorer.locator(f"#response-{name}").inner_text()
             seen.add(verdict.partition(":")[0])
     assert seen == {"usable", "imprecise", "extrapolated"}
+
+
+@pytest.mark.chromium
+def test_the_command_is_for_the_folder_of_the_project(sample, folder, visit, monkeypatch):
+    monkeypatch.chdir(folder.parent)
+    write_report(*sample, folder, folder / "report.html")
+    with visit((folder / "report_explorer.html").as_uri(), 1300) as (page, _):
+        command = shlex.split(page.locator("#command").inner_text())
+        assert command[2] == f"{folder.name}/surrogate.nc"
+        page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+        page.click("#copy")
+        assert page.locator("#copy").inner_text() == "Copied"
+        assert shlex.split(page.evaluate("navigator.clipboard.readText()")) == command
+        move(page, "velocity", 0.3)
+        assert page.locator("#copy").inner_text() == "Copy"
+
+
+@pytest.mark.chromium
+def test_the_address_keeps_the_values_until_they_are_reset(folder, visit):
+    with visit((folder / "report_explorer.html").as_uri(), 1300) as (page, _):
+        opened = shown(page, "peak_force")
+        move(page, "velocity", 0.2)
+        page.fill("#beam_depth", "28.05")
+        page.select_option("#against", label=page.inner_text("label[for=sphere_radius]"))
+        chosen = shown(page, "peak_force")
+        assert chosen != opened
+        page.wait_for_url("**&against=sphere_radius")
+        page.reload()
+        assert shown(page, "peak_force") == chosen
+        assert page.input_value("#beam_depth") == "28.05"
+        assert "Radius of the sphere" in str(page.text_content("#response-peak_force svg"))
+        page.click("#reset")
+        assert shown(page, "peak_force") == opened
+        page.reload()
+        assert shown(page, "peak_force") == opened
+
+
+@pytest.mark.chromium
+def test_the_page_opens_with_precise_numbers(sample, folder, visit):
+    """Here one response is zero at the medians."""
+    runs, _ = sample
+    median = distribution_of(DISTRIBUTIONS["beam_depth"]).quantile(np.array([0.5])).item()
+    depth = runs["beam_depth"] - median
+    made = 1e3 * depth + 1e-3 * np.sin(1e6 * depth)
+    runs = runs.assign(rebound_velocity=made.assign_attrs(runs["rebound_velocity"].attrs))
+    write_report(runs, analysis(runs).assign_attrs(runs.attrs), folder, folder / "report.html")
+    with visit((folder / "report_explorer.html").as_uri(), 1300) as (page, _):
+        assert shown(page, "rebound_velocity").endswith(" m/s")
+        page.fill("#beam_depth", f"{1e3 * median:.4f}")
+        assert "zero lies within the error" in shown(page, "rebound_velocity")
 
 
 @pytest.mark.chromium
