@@ -24,7 +24,7 @@ from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 from PIL import Image
 
-from impactlab.figures import labels, scales, style
+from impactlab.figures import access, labels, scales, style
 from impactlab.figures.labels import display
 from impactlab.files import check_suffix, replaced
 from impactlab.model.discretisation import Discretisation
@@ -38,6 +38,9 @@ SUFFIXES = (".mp4", ".gif", ".html")
 """Suffixes of the files of animations."""
 RATE = 25
 """Frames per second."""
+FILE = "animation.html"
+"""Name of the animation among the figures of a study of one run."""
+_FRAMES = 120  # of that one
 _SIZE, _DPI = (7.2, 5.2), 100  # inches; an even number of pixels, which MP4 needs
 _BALL = 9.0  # radius of the sphere in points: it is no part of the scales
 _LEAST = 1e-5  # smallest strain with a colour
@@ -219,7 +222,19 @@ def with_fields(run: xr.Dataset, frames: int) -> xr.Dataset:
         raise ValueError("animate: expected an impact, with its parameters as coordinates")
     values = {name: run[name].item() for name in PARAMETERS if name in run.coords}
     impact, grid = with_values(paper_impact(), Discretisation(), values)
-    return run_dataset(impact, grid, duration=float(run["duration"]), frames=frames)
+    solved = run_dataset(impact, grid, duration=float(run["duration"]), frames=frames)
+    if not np.isfinite(solved["deflection"]).all():
+        raise ValueError("animate: the run diverged: take more nodes or a smaller courant")
+    return solved
+
+
+def of_study(runs: xr.Dataset) -> Animation | None:
+    """Return the animation of a study of one run that stores profiles; None of others."""
+    if "deflection" not in runs or access.count(runs) != 1 or access.further_models(runs):
+        return None
+    if not np.isfinite(runs["deflection"]).all():  # it diverged
+        return None
+    return animation(with_fields(runs.squeeze(access.design_dims(runs)), _FRAMES))
 
 
 @style.paper

@@ -14,7 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from impactlab.figures import data, findings, record, style
+from impactlab.figures import animation, data, findings, record, style
 from impactlab.figures.catalogue import applicable
 from impactlab.files import identity, replaced
 from impactlab.verification.finding import gravest_first
@@ -30,9 +30,16 @@ Drawing = tuple[record.Figure, tuple[xr.Dataset, xr.Dataset]]
 
 
 def draw_all(runs: xr.Dataset, analysis: xr.Dataset, folder: Path) -> list[Path]:
-    """Draw each figure of the catalogue that applies to a study of runs; see `draw`."""
+    """Draw each figure of the catalogue that applies to a study of runs; see `draw`.
+
+    A study of one run that stores profiles has an animation, too.
+    """
     drawings = [(figure, (runs, analysis)) for figure in applicable(runs, analysis).values()]
-    return draw(drawings, folder, str(runs.attrs.get("study")), made_from=analysis)
+    paths = draw(drawings, folder, str(runs.attrs.get("study")), made_from=analysis)
+    if moving := animation.of_study(runs):
+        return [*paths, moving.save(folder / animation.FILE)]
+    (folder / animation.FILE).unlink(missing_ok=True)
+    return paths
 
 
 def draw_findings(stored: xr.Dataset, folder: Path) -> list[Path]:

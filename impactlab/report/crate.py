@@ -14,6 +14,7 @@ from typing import Any
 import xarray as xr
 from ruamel.yaml import YAML
 
+from impactlab.figures.animation import FILE
 from impactlab.figures.record import CAPTIONS, listed
 from impactlab.files import replaced
 
@@ -56,6 +57,7 @@ def write_crate(stored: xr.Dataset, folder: Path, figures_folder: Path, report: 
         for file in sorted(figures_folder.glob(f"{name}.*")):
             named[file] = (entry["title"], entry["caption"])
     named[figures_folder / CAPTIONS] = ("Captions of the figures", "")
+    named[figures_folder / FILE] = ("Animation of the run", "")
     named[report] = ("Report", "")
     named[report.with_name(f"{report.stem}_explorer.html")] = ("Explorer of the surrogates", "")
     files = [

@@ -12,6 +12,7 @@ import xarray as xr
 
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, design_dims, is_sample, names, responses, usable, varied
+from impactlab.figures.animation import FILE
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.samples import scatter
@@ -65,6 +66,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         title = "Notes on the model"
         sections.append(Section("notes", title, sentences=remarks, closed=True))
     size, ending = counts(runs)
+    moving = figures_folder / FILE
     write_page(
         "report.html.j2",
         path,
@@ -84,6 +86,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         files=os.path.relpath(figures_folder, path.parent),
         sections=sections,
         explorer=write_explorer(runs, analysis, path),
+        animation=moving.read_text("utf-8") if moving.exists() else "",
     )
 
 

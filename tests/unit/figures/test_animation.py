@@ -1,6 +1,7 @@
 """Moving pictures of one impact."""
 
 import base64
+import html
 import json
 import re
 import shutil
@@ -139,3 +140,30 @@ def test_a_stored_run_is_solved_again_with_its_own_parameters():
             _selected(runs, values)
     with pytest.raises(ValueError, match="expected an impact"):
         with_fields(single.drop_vars("velocity"), 5)
+
+
+def test_a_study_of_one_run_with_profiles_moves_in_its_report(tmp_path, monkeypatch):
+    monkeypatch.setattr(animations, "_FRAMES", 4)
+
+    def study(*velocities):
+        return il.Study(
+            title="One impact",
+            impact=IMPACT,
+            discretisation=GRID,
+            duration="12 ms",
+            store={"profiles": True},
+            sampling=il.Grid(parameters={"velocity": velocities}),
+            name="one",
+            results=tmp_path,
+        )
+
+    file = tmp_path / "one" / "figures" / "animation.html"
+    study(5.0).run(workers=1)
+    page = study(5.0).report().read_text("utf-8")
+    moving = html.unescape(re.search(r"<iframe [^>]*srcdoc=\"([^\"]*)\"", page)[1])
+    assert moving == file.read_text("utf-8")
+    assert "Impact at 5 m/s" in moving
+    assert "<script" not in page
+    study(5.0, 6.0).run(workers=1, replace=True)
+    assert "<iframe" not in study(5.0, 6.0).report().read_text("utf-8")
+    assert not file.exists()
