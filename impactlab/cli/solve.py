@@ -252,9 +252,9 @@ def verify(
 def go(
     study: StudyFile, workers: Threads = _ALL, force: Force = False, replace: Replace = False
 ) -> None:
-    """Do everything for one study: run, analyse, figures and report.
+    """Do everything for one study: run, analyse, figures, report and index.
 
-    For a verification: verify, figures and report. Solved runs are not solved again.
+    For a verification: verify, figures, report and index. Solved runs are not solved again.
     """
     from impactlab.cli import results
     from impactlab.methods.sobol import Sobol
@@ -279,5 +279,6 @@ def go(
         results.analyse(stored[0], **steps.evidence(declared, stored[0]))
     results.figures(stored)
     results.report(stored)
+    results.index()
     if failed:
         raise typer.Exit(code=1)

@@ -12,17 +12,16 @@ from pathlib import Path
 from typing import Any
 
 import xarray as xr
-from ruamel.yaml import YAML
 
 from impactlab.figures.animation import FILE
 from impactlab.figures.record import CAPTIONS, listed
 from impactlab.files import replaced
+from impactlab.report.citation import author_name, read_citation
 
 METADATA = "ro-crate-metadata.json"
 _STUDY = "solved_study.yaml"
 """Not the study's own name: such a file may be there, and changed since."""
 _SPECIFICATION = "https://w3id.org/ro/crate/1.1"
-_PACKAGE = Path(__file__).parents[1]
 _FILES = {
     "design.nc": "Parameters of all runs",
     "resolution.nc": "Pilot runs that determined the discretisation",
@@ -139,8 +138,7 @@ def _action(
 
 def _software(attrs: dict[str, Any]) -> list[Entity]:
     """Return the software as it solved the runs, its authors and its licence (CITATION.cff)."""
-    file = _PACKAGE / "CITATION.cff"  # in a checkout it is beside the package
-    citation = YAML(typ="safe").load(file if file.exists() else _PACKAGE.with_name(file.name))
+    citation = read_citation()
     licence = {
         "@id": f"https://spdx.org/licenses/{citation['license']}",
         "@type": "CreativeWork",
@@ -148,11 +146,9 @@ def _software(attrs: dict[str, Any]) -> list[Entity]:
     }
     authors = []
     for number, entry in enumerate(citation["authors"], 1):
-        person = f"{entry.get('given-names', '')} {entry.get('family-names', '')}".strip()
-        kind, name = ("Person", person) if person else ("Organization", entry["name"])
-        authors.append(
-            {"@id": entry.get("orcid", f"#author-{number}"), "@type": kind, "name": name}
-        )
+        kind = "Organization" if "name" in entry else "Person"
+        place = entry.get("orcid", f"#author-{number}")
+        authors.append({"@id": place, "@type": kind, "name": author_name(entry)})
     revision = str(attrs.get("source_revision", ""))
     software = {
         "@id": "#impactlab",

@@ -25,6 +25,7 @@ from impactlab.figures.needs import REFINED
 from impactlab.figures.record import listed
 from impactlab.files import identity, replaced
 from impactlab.methods import FAMILIES
+from impactlab.report.citation import how_to_cite, made_from
 
 _PROVENANCE = {
     "created": "Solved",
@@ -119,9 +120,12 @@ def write_page(
 ) -> None:
     """Render a template of a package, which may use those of this one, into a file.
 
+    Its foot says how to cite the software, what the results were `made` from, and leads to the
+    `index`, by default that of results/ from a page in results/NAME.
     The file is written whole or not at all. Raises OSError where the folder cannot be written.
     """
-    text = _environment(package).get_template(template).render(context)
+    foot = {"citation": how_to_cite(), "made": "", "index": "../index.html"}
+    text = _environment(package).get_template(template).render(foot | context)
     path.parent.mkdir(parents=True, exist_ok=True)
     with replaced(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
@@ -144,7 +148,8 @@ def described(stored: xr.Dataset, contents: str = "runs") -> dict[str, Any]:
     """Return what every page says of a study; contents: those of the dataset."""
     attrs = {key: str(stored.attrs.get(key, "")) for key in ("study", "description", "study_text")}
     title = str(stored.attrs.get("title") or attrs["study"])
-    return attrs | {"title": title, "provenance": provenance(stored, contents)}
+    made = made_from(stored)
+    return attrs | {"title": title, "made": made, "provenance": provenance(stored, contents)}
 
 
 def provenance(stored: xr.Dataset, contents: str = "runs") -> Table:

@@ -13,7 +13,7 @@ import xarray as xr
 
 from impactlab.figures.draw import draw_all, draw_findings
 from impactlab.figures.record import CAPTIONS, listed
-from impactlab.files import check_source, checked, opened, read_netcdf
+from impactlab.files import check_source, checked, read_netcdf
 from impactlab.report import study, verification
 from impactlab.report.answer import answers
 from impactlab.report.page import described, leading, write_page
@@ -83,13 +83,12 @@ def write_index(results: Path, path: Path) -> None:
     for report in sorted(results.glob("*/report.html")):
         for kind in (RUNS, FINDINGS):
             if report.with_name(kind.files[0]).exists():
-                with opened(report.with_name(kind.files[0]), "runs", "findings") as stored:
-                    size, failed = kind.counts(stored)
-                    entry = described(stored) | {"size": size, "failed": failed, "answer": ""}
                 try:
                     with open_stored([*map(report.with_name, kind.files)]) as (_, datasets):
+                        size, failed = kind.counts(datasets[0])
+                        entry = described(datasets[0]) | {"size": size, "failed": failed}
                         entry["answer"] = answers(*datasets)[0]
-                except (OSError, ValueError):  # no analysis, or that of other runs
+                except (OSError, ValueError):  # no analysis, that of other runs, or damaged
                     continue
                 figures = report.with_name("figures")
                 captions = listed(figures) if (figures / CAPTIONS).exists() else {}
@@ -102,4 +101,4 @@ def write_index(results: Path, path: Path) -> None:
                 break
     claims = results / "paper" / "claims.html"
     paper = address(claims) if claims.exists() else ""
-    write_page("index.html.j2", path, entries=entries, paper=paper)
+    write_page("index.html.j2", path, entries=entries, paper=paper, index="")

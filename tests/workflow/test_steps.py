@@ -41,6 +41,7 @@ def test_one_command_goes_from_a_study_to_its_report(folder):
     results = folder / "results" / "small"
     datasets = [xr.load_dataset(results / name) for name in files[:2]]
     finding = answers(*datasets)[0]
+    assert told.pop() == "results/index.html: the list of all reports"
     assert told[0] == (
         "results/small/runs.nc: 9 runs, 0 without an answer; peak_force from 5.501 kN to 24.42 kN"
     )

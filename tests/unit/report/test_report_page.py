@@ -2,11 +2,13 @@
 
 import base64
 from itertools import pairwise
+from pathlib import Path
 from urllib.parse import unquote
 
 import numpy as np
 import pytest
 import xarray as xr
+from ruamel.yaml import YAML
 
 from impactlab.files import read_netcdf, write_netcdf
 from impactlab.report.answer import answers
@@ -14,6 +16,7 @@ from impactlab.report.page import drawn_data
 from impactlab.report.results import RUNS, open_stored, write_index
 from impactlab.report.study import write_report
 
+OUTSIDE = {"indices.csv", "../index.html"}
 STUDIES = ("velocity_study", "material_study", "discretisation_study", "sobol_study")
 
 
@@ -24,14 +27,14 @@ def test_a_page_needs_nothing_else_and_can_be_read_by_keyboard(study, report, re
     assert page.named("script") == page.named("link") == []
     for _, attrs in page.elements:
         assert attrs.get("src", "data:").startswith("data:")
-        assert attrs.get("href", "#").startswith("#") or attrs["href"] == "indices.csv"
+        assert attrs.get("href", "#").startswith("#") or attrs["href"] in OUTSIDE
         assert "style" not in attrs
         assert not [key for key in attrs if key.startswith("on")]
     assert "@import" not in page.source
     assert "url(" not in page.source
     ids = [attrs["id"] for _, attrs in page.elements if "id" in attrs]
     assert len(ids) == len(set(ids))
-    inside = {attrs["href"] for attrs in page.named("a")} - {"indices.csv"}
+    inside = {attrs["href"] for attrs in page.named("a")} - OUTSIDE
     assert inside <= {f"#{name}" for name in ids}
     levels = [int(tag[1]) for tag, _ in page.elements if tag in ("h1", "h2", "h3", "h4")]
     assert levels.count(1) == 1
@@ -62,7 +65,7 @@ def test_markup_in_a_study_is_text(report, material_study):
         runs.attrs[key] = nasty
     page = report(runs, analysis)
     assert page.named("script") == page.named("b") == []
-    assert page.text.count(nasty) == 5  # the title stands in the head, too
+    assert page.text.count(nasty) == 6  # title and revision stand in head and foot, too
 
 
 def test_a_missing_figure_says_what_to_do(results, velocity_study):
@@ -83,6 +86,19 @@ def test_provenance_and_the_study_file_are_told(report, material_study):
     assert "2000-01-01 00:00:00 UTC" in page.text
     assert "impactlab run studies/material.yaml" in page.text
     assert "make study" in page.text
+
+
+def test_the_foot_cites_names_the_file_and_leads_to_the_index(report, material_study):
+    runs, analysis = material_study
+    runs.attrs |= {"study_file": "../../studies/material.yaml", "versions": "impactlab 9.8, numpy"}
+    page = report(runs, analysis)
+    citation = YAML(typ="safe").load(Path(__file__).parents[3] / "CITATION.cff")
+    made = f"studies/material.yaml (SHA-256 {runs.attrs['study_sha256'][:12]}…) by impactlab 9.8"
+    foot = page.text[page.text.index("All results") :]
+    assert made in foot
+    assert " ".join(citation["message"].split()) in foot
+    assert f"{citation['authors'][0]['name']}: impactlab, version {citation['version']}." in foot
+    assert "../index.html" in {attrs["href"] for attrs in page.named("a")}
 
 
 def test_the_data_of_a_figure_are_thinned_evenly(tmp_path):
