@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -74,15 +75,56 @@ def predict(
     print_predictions(model.predict(**numbers))
 
 
-def figures(stored: StoredFiles, output: Pictures = None) -> None:
-    """Draw all figures that apply to a study's results or findings."""
-    from impactlab.figures.labels import counted
-    from impactlab.report.results import open_stored
+def figures(
+    stored: Annotated[list[Path], typer.Argument(metavar="STORED...", help=f"{_STORED} Or NAME.")],
+    output: Annotated[
+        Path | None, new_folder(help="Default: figures/ (or panels/) beside the first of them.")
+    ] = None,
+    width: Annotated[
+        str | None, typer.Option(help="Draw each panel as a file of this width, such as 89mm.")
+    ] = None,
+    style: Annotated[
+        str | None, typer.Option(help="Of these panels: nature, science or plain (default).")
+    ] = None,
+) -> None:
+    """Draw all figures that apply to a study's results or findings.
 
-    folder = output or stored[0].with_name("figures")
+    With --width or --style, draw each panel as a file of its own instead, as SVG, PDF and PNG:
+    FIGURE_PANEL_89mm.pdf. NAME is a study whose results are in results/NAME.
+    """
+    from impactlab.figures.labels import counted
+    from impactlab.report.results import open_stored, stored_files
+    from impactlab.study.steps import results_folder
+
+    if len(stored) == 1 and not stored[0].suffix:
+        stored = stored_files(results_folder(str(stored[0])))
+    alone = width is not None or style is not None
+    write = _panels(width or "89mm", style or "plain") if alone else None
+    folder = output or stored[0].with_name("panels" if alone else "figures")
     with open_stored(stored) as (kind, datasets):
-        count = sum(path.suffix == ".svg" for path in kind.draw(*datasets, folder))
-        print(f"{folder}: {counted(count, 'figure')}")
+        count = sum(path.suffix == ".svg" for path in kind.draw(*datasets, folder, write))
+        print(f"{folder}: {counted(count, 'panel' if alone else 'figure')}")
+
+
+def _panels(width: str, style: str) -> Callable[..., list[Path]]:
+    """Return what draws panels of a width and a style. Raises ValueError naming the option."""
+    from functools import partial
+
+    from impactlab.figures.draw import draw_panels
+    from impactlab.figures.style import DOUBLE, SHEETS
+    from impactlab.validation.errors import unknown
+
+    millimetres = round(1e3 * given("--width", width, "m"), 6)
+    if not _NARROWEST <= millimetres <= DOUBLE:
+        expected = f"{_NARROWEST:g} to {DOUBLE:g} mm (the columns of a paper)"
+        raise ValueError(f"--width = {width!r}: expected {expected}")
+    if style not in SHEETS:
+        raise ValueError(f"--style = {style!r}: {unknown('style', style, SHEETS)}")
+    return partial(draw_panels, width=millimetres, look=style)
+
+
+_NARROWEST = 60.0
+"""Least width of a panel that has room for its labels at 8 pt, mm."""
 
 
 def report(

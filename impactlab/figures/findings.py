@@ -48,8 +48,8 @@ def overview_caption(outcomes: Sequence[Outcome]) -> str:
 @style.paper
 def plot_overview(outcomes: Sequence[Outcome]) -> Figure:
     """Draw a row per check, the first on top; failed comparisons have a shape of their own."""
-    figure, (axes,) = style.panels(1, columns=1, height=18.0 + _ROW * len(outcomes))
-    figure.set_figwidth(style.DOUBLE * style.MILLIMETRE)
+    height = 18.0 + _ROW * len(outcomes)
+    figure, (axes,) = style.panels(1, columns=1, height=height, width=style.DOUBLE)
     for row, outcome in enumerate(outcomes):
         _draw_row(axes, row, outcome)
     axes.axvline(1.0, label="_limit", **style.GUIDE)

@@ -57,9 +57,9 @@ def index_bars(family: Family) -> Figure:
         analysis = analysis.isel(parameter=np.argsort(-largest.values, kind="stable"))
         height = 10 + max(5.2, 2.4 * len(shown)) * analysis.sizes["parameter"]
         figure, axes = responses_grid.panels(analysed(runs, analysis), height, beneath=8)
-        for position, (response, ax) in enumerate(axes.items()):
+        for response, ax in axes.items():
             bars(ax, analysis, family, response)
-            ax.tick_params(axis="y", labelleft=position % responses_grid.COLUMNS == 0)
+            ax.tick_params(axis="y", labelleft=ax.get_subplotspec().is_first_col())
         return style.finish(figure, family.axis)
 
     return plot

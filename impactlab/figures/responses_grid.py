@@ -27,7 +27,7 @@ def panels(
     height = max(height, _ALONE) if len(names) == 1 else height
     titles = [labels.title(name) for name in names]
     figure, axes = style.titled_panels(titles, columns=COLUMNS, height=height)
-    figure.set_figheight(figure.get_figheight() + beneath * style.MILLIMETRE)
+    style.grow(figure, beneath)
     return figure, dict(zip(names, axes, strict=True))
 
 

@@ -11,9 +11,13 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 import matplotlib.style
+from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -21,6 +25,7 @@ from matplotlib.lines import Line2D
 from impactlab.figures.panel import Panel
 
 SINGLE, DOUBLE = 89.0, 183.0  # widths of one and of two columns of a paper, mm
+PAGE = 230.0  # height of a page of a paper that leaves room for a caption, mm
 MILLIMETRE = 1.0 / 25.4  # in inches, matplotlib's unit of length
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
@@ -51,15 +56,55 @@ _SETTINGS: dict[str, Any] = {
     "figure.constrained_layout.w_pad": 0.05,
     "svg.fonttype": "path",  # text in the reader's fonts would shift and overlap
     "svg.hashsalt": "impactlab",
+    "pdf.fonttype": 42,  # letters stay letters; publishers refuse those of type 3
     "savefig.dpi": 300,
 }
+SHEETS: dict[str, tuple[str, ...]] = {
+    "plain": (),
+    "nature": ("science", "misc/no-latex", "journals/nature"),
+    "science": ("science", "misc/no-latex"),
+}
+"""Style sheets of SciencePlots by style; "plain" is the look of the reports."""
+_BOXED: dict[str, Any] = {
+    "axes.spines.top": True,
+    "axes.spines.right": True,
+    "axes.grid": False,
+}
+"""What those sheets take from matplotlib's defaults."""
+_FALLBACK = "DejaVu Sans"
+"""Font of the letters that a sheet's font lacks, such as raised minus signs."""
 _LOCK = threading.RLock()
+_STYLE: ContextVar[str] = ContextVar("style", default="plain")
+
+
+@contextmanager
+def chosen(name: str) -> Iterator[None]:
+    """Draw in one of the styles of SHEETS."""
+    before = _STYLE.set(name)
+    try:
+        yield
+    finally:
+        _STYLE.reset(before)
+
+
+def _files(sheets: Sequence[str]) -> list[Path]:
+    """Return the files of SciencePlots' sheets; the package, when imported, loads pyplot."""
+    package = find_spec("scienceplots") if sheets else None
+    folders = package.submodule_search_locations if package else None
+    return [
+        Path(folder, "styles", f"{sheet}.mplstyle") for folder in folders or () for sheet in sheets
+    ]
 
 
 @contextmanager
 def applied() -> Iterator[None]:
     """Apply the style, in one thread at a time: matplotlib's settings are global."""
+    sheets = _files(SHEETS[_STYLE.get()])
     with _LOCK, matplotlib.style.context(["default", _SETTINGS]):
+        if sheets:
+            matplotlib.style.use([_BOXED, *sheets])
+            fonts = rcParams[f"font.{rcParams['font.family'][0]}"]
+            rcParams["font.family"] = [fonts[0], _FALLBACK]
         yield
 
 
@@ -84,16 +129,77 @@ paper = applied()
 """Decorator of functions that draw, so that they do it under the style."""
 
 
-def panels(
-    count: int, *, columns: int, height: float, sharex: bool = False, sharey: bool = False
-) -> tuple[Figure, list[Axes]]:
-    """Return a figure of `count` panels, two columns of a paper wide, or one for one panel per row.
+@dataclass
+class Alone:
+    """A panel that is drawn alone: its number, and the figure's width in mm.
 
-    height: of a row of panels, mm.
+    count: number of panels of the whole figure, 0 until it is drawn (or if it has no panels).
     """
+
+    number: int
+    width: float
+    count: int = 0
+
+
+_ALONE: ContextVar[Alone | None] = ContextVar("panel drawn alone", default=None)
+
+
+@contextmanager
+def alone(number: int, width: float) -> Iterator[Alone]:
+    """Let `panels` return a figure that holds one panel, laid out for a width in mm."""
+    panel = Alone(number, width)
+    before = _ALONE.set(panel)
+    try:
+        yield panel
+    finally:
+        _ALONE.reset(before)
+
+
+_FLATTEST = 0.62
+"""Least height over width of a panel that is drawn alone."""
+
+
+def _one_of(
+    panel: Alone, count: int, height: float, *, sharex: bool, sharey: bool
+) -> tuple[Figure, list[Axes]]:
+    """Return a figure of one panel, and all panels: the others are on a page that is left."""
+    panel.count = count
+    size = panel.width, min(max(height, _FLATTEST * panel.width), PAGE)
+    figure = Figure(figsize=[length * MILLIMETRE for length in size], layout="constrained")
+    left, axes = Figure(), list[Axes]()
+    for number in range(count):
+        page = figure if number == panel.number else left
+        first = axes[0] if axes else None
+        axes.append(
+            page.add_subplot(
+                axes_class=Panel,
+                sharex=first if sharex else None,
+                sharey=first if sharey else None,
+            )
+        )
+    return figure, axes
+
+
+def panels(
+    count: int,
+    *,
+    columns: int,
+    height: float,
+    width: float = 0.0,
+    sharex: bool = False,
+    sharey: bool = False,
+) -> tuple[Figure, list[Axes]]:
+    """Return a figure of `count` panels; its height is at most that of a page.
+
+    height: of a row of panels, mm. width: mm; without it, that of two columns of a paper, or of one
+    for one panel per row.
+    """
+    if (panel := _ALONE.get()) is not None:
+        return _one_of(panel, count, height, sharex=sharex, sharey=sharey)
     columns = min(columns, count)
     rows = math.ceil(count / columns)
-    size = ((SINGLE if columns == 1 else DOUBLE) * MILLIMETRE, rows * height * MILLIMETRE)
+    width = width or (SINGLE if columns == 1 else DOUBLE)
+    size = width * MILLIMETRE, min(rows * height, PAGE) * MILLIMETRE
     figure = _NEW.get()(figsize=size, layout="constrained")
     kind: Any = {"axes_class": Panel}
     grid = figure.subplots(
@@ -105,6 +211,11 @@ def panels(
         for axes in grid[max(count - columns, 0) : count]:
             axes.tick_params(labelbottom=True)
     return figure, list(grid[:count])
+
+
+def grow(figure: Figure, height: float) -> None:
+    """Make room of a height in mm; beyond the height of a page, the panels give way."""
+    figure.set_figheight(min(figure.get_figheight() + height * MILLIMETRE, PAGE * MILLIMETRE))
 
 
 def titled_panels(
@@ -142,7 +253,7 @@ def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:
     entries |= guides
     columns = _columns(figure.get_figwidth() / MILLIMETRE, list(entries))
     rows = math.ceil(len(entries) / columns) + bool(title)
-    figure.set_figheight(figure.get_figheight() + (rows * 4.2 + 1.0) * MILLIMETRE)
+    grow(figure, rows * 4.2 + 1.0)
     handles: Any = [tuple(kinds.values()) for kinds in entries.values()]
     figure.legend(
         handles, list(entries), loc="outside upper center", ncols=columns, title=title or None
@@ -175,7 +286,7 @@ def panel_legends(figure: Figure) -> None:
             axes.legend(handles, labels, title=axes.get_title(loc="left"), ncols=columns, **_ABOVE)
             axes.set_title("", loc="left")
     lines = figure.axes[0].get_subplotspec().get_gridspec().nrows  # type: ignore[union-attr]
-    figure.set_figheight(figure.get_figheight() + lines * rows * 4.2 * MILLIMETRE)
+    grow(figure, lines * rows * 4.2)
 
 
 _MARGIN = 15.0  # left of a panel, for numbers and label, mm
@@ -189,10 +300,10 @@ _ABOVE: dict[str, Any] = {
 }
 
 
-def _columns(width: float, labels: list[str], letter: float = 1.6) -> int:
-    """Return the columns that fit into a width in mm; letters are up to 1.6 mm wide at 7 pt."""
+def _columns(width: float, labels: list[str], letter: float = 1.45) -> int:
+    """Return the columns that fit into a width in mm; letters are up to 1.45 mm wide at 7 pt."""
     longest = max((len(label) for label in labels), default=1)
-    fit = int(width / (letter * longest + 12.5))
+    fit = int(width / (letter * longest + 15.5))
     return max(1, min(fit, len(labels)))
 
 

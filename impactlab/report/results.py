@@ -23,9 +23,10 @@ from impactlab.report.page import described, leading, write_page
 class Kind:
     """One kind of results.
 
-    files: stored beside the report; the first holds the study's title. draw(*datasets, folder):
-    write the figures. write(*datasets, figures_folder, path): write the report.
-    counts(dataset of the first file): return how much there is and what failed ("" for nothing).
+    files: stored beside the report; the first holds the study's title. draw(*datasets, folder,
+    write): draw the figures, by default into the files of a report. write(*datasets,
+    figures_folder, path): write the report. counts(dataset of the first file): return how much
+    there is and what failed ("" for nothing).
     """
 
     files: tuple[str, ...]

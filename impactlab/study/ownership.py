@@ -108,7 +108,8 @@ def write_runs(runs: xr.Dataset, path: Path) -> None:
         drawings = json.loads(captions.read_text("utf-8"))
     pictures = [file for name in drawings for file in captions.parent.glob(f"{name}.*")]
     made = (path.parent / name for name in (*_MADE, f"tables/{runs.attrs.get('study')}.xlsx"))
-    for file in (*pictures, captions, *made):
+    panels = (path.parent / "panels").glob("*mm.*")
+    for file in (*pictures, captions, *panels, *made):
         file.unlink(missing_ok=True)
     log.warning("%s: what was made from the runs before is removed (analysis, report)", path)
 
