@@ -204,9 +204,7 @@ def draw(
         if not ax.lines:
             style.remark(ax)
         ax.label_outer(remove_inner_ticks=False)
-        place = ax.get_subplotspec()
-        assert place is not None
-        ax.set(xlabel=x, ylabel=y if place.is_first_col() else None)
+        ax.set(xlabel=x, ylabel=y if style.starts_row(ax) else None)
     return figure, axes, selected
 
 

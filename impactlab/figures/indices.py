@@ -59,7 +59,7 @@ def index_bars(family: Family) -> Figure:
         figure, axes = responses_grid.panels(analysed(runs, analysis), height, beneath=8)
         for response, ax in axes.items():
             bars(ax, analysis, family, response)
-            ax.tick_params(axis="y", labelleft=ax.get_subplotspec().is_first_col())
+            ax.tick_params(axis="y", labelleft=style.starts_row(ax))
         return style.finish(figure, family.axis)
 
     return plot

@@ -103,7 +103,8 @@ def applied() -> Iterator[None]:
     with _LOCK, matplotlib.style.context(["default", _SETTINGS]):
         if sheets:
             matplotlib.style.use([_BOXED, *sheets])
-            fonts = rcParams[f"font.{rcParams['font.family'][0]}"]
+            serif = rcParams["font.family"] == ["serif"]
+            fonts = rcParams["font.serif" if serif else "font.sans-serif"]
             rcParams["font.family"] = [fonts[0], _FALLBACK]
         yield
 
@@ -164,8 +165,9 @@ def _one_of(
 ) -> tuple[Figure, list[Axes]]:
     """Return a figure of one panel, and all panels: the others are on a page that is left."""
     panel.count = count
-    size = panel.width, min(max(height, _FLATTEST * panel.width), PAGE)
-    figure = Figure(figsize=[length * MILLIMETRE for length in size], layout="constrained")
+    height = min(max(height, _FLATTEST * panel.width), PAGE)
+    size = panel.width * MILLIMETRE, height * MILLIMETRE
+    figure = Figure(figsize=size, layout="constrained")
     left, axes = Figure(), list[Axes]()
     for number in range(count):
         page = figure if number == panel.number else left
@@ -211,6 +213,12 @@ def panels(
         for axes in grid[max(count - columns, 0) : count]:
             axes.tick_params(labelbottom=True)
     return figure, list(grid[:count])
+
+
+def starts_row(axes: Axes) -> bool:
+    """Return whether a panel is the first of its row."""
+    place = axes.get_subplotspec()
+    return place is not None and place.is_first_col()
 
 
 def grow(figure: Figure, height: float) -> None:
