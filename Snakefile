@@ -14,6 +14,10 @@ wildcard_constraints:
     study="[A-Za-z0-9_-]+",
 
 
+# Studies side by side, in this order; each comparison is made where all of its studies are.
+COMPARISONS = {"sobol_velocities": ["sobol_slow", "sobol", "sobol_fast"]}
+
+
 rule all:
     input:
         "results/index.html",
@@ -24,12 +28,14 @@ include: "workflow/rules/runs.smk"
 include: "workflow/rules/analysis.smk"
 include: "workflow/rules/verification.smk"
 include: "workflow/rules/paper.smk"
+include: "workflow/rules/comparison.smk"
 
 
 rule index:
     input:
         code=code(*REPORTING),
         reports=expand("results/{study}/report.html", study=STUDIES),
+        comparisons=expand("results/{comparison}/report.html", comparison=comparable(COMPARISONS)),
         paper="results/paper/claims.html" if set(PAPER) <= set(STUDIES) else [],
     output:
         report("results/index.html", caption="workflow/captions/index.rst", category="Index"),

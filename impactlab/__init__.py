@@ -35,6 +35,7 @@ What the runs say
     plot            figures: plot.run, plot.response, plot.sobol, plot.animate, ...
     load_surrogate  predictions without solving
     compare         measurements beside the runs, with verdicts
+    compare_studies studies beside each other, on one page
     calibrate       parameters and contact laws from measurements
 
 Quantities are SI numbers, strings with a unit or quantities of pint. `help(il.Study)` and so on

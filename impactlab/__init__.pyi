@@ -4,6 +4,7 @@ from .analysis.surrogate import load_surrogate as load_surrogate
 from .api.definition import Study as Study
 from .api.experiment import calibrate as calibrate
 from .api.experiment import compare as compare
+from .api.experiment import compare_studies as compare_studies
 from .methods.delta import Delta as Delta
 from .methods.distributions import Choice as Choice
 from .methods.distributions import Lognormal as Lognormal

@@ -111,6 +111,7 @@ CONTENTS = {
     "refinement": "impactlab refine",
     "findings": "impactlab verify",
     "calibration": "impactlab calibrate",
+    "comparison": "impactlab compare",
     "impact": "impactlab simulate",
     "figure": "impactlab figures",
 } | wings.contents()

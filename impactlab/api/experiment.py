@@ -1,8 +1,9 @@
-"""A study beside measurements: comparison and calibration."""
+"""A study beside measurements, comparison and calibration; and studies beside each other."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import xarray as xr
 
@@ -57,6 +58,50 @@ def compare(
     """
     analysis = analyse(runs) if analysis is None else analysis
     return compared(runs, analysis, read_measurements(measurements, runs))
+
+
+def compare_studies(*studies: Study, path: str | Path | None = None) -> xr.Dataset:
+    """Compare solved studies side by side, and write the page.
+
+    It shows what differs in their files, each shared response on common axes, and the sensitivity
+    indices of samples with the differences that chance does not explain. `compare` compares one
+    study with measurements.
+
+    Parameters
+    ----------
+    *studies : Study
+        Two or more studies with runs, all grids or all samples, in the order of the page.
+    path : str or pathlib.Path, optional
+        Folder for report.html, comparison.nc and figures; by default one beside the first study's.
+
+    Returns
+    -------
+    xarray.Dataset
+        Differences of the indices on (response, pair, measure, parameter), with half-widths that
+        hold together and `is_significant`; `first` and `second` number the studies of a pair. The
+        attribute `answer` holds the findings in sentences.
+
+    Raises
+    ------
+    ValueError
+        If a study has no runs, or studies are of different kind or share no response.
+
+    Examples
+    --------
+    >>> studies, ends = [], il.Uniform("-3.14", "3.14")
+    >>> for title, third in {"wide": ends, "narrow": il.Uniform(-1, 1)}.items():
+    ...     sampling = il.Sobol(base_samples=1024, parameters={"x1": ends, "x2": ends, "x3": third})
+    ...     studies.append(il.Study(title=title, function="ishigami", sampling=sampling))
+    ...     runs = studies[-1].run(workers=1)
+    >>> print(il.answers(il.compare_studies(*studies))[0])
+    From wide to narrow the share of x2 in the scatter of the value rises from ...
+    """
+    from impactlab.report.comparison import compare_results
+
+    for study in studies:
+        study.analyse()
+    output = None if path is None else Path(path)
+    return compare_results([study.folder for study in studies], output)
 
 
 def calibrate(

@@ -31,6 +31,7 @@ _COMMANDS = {
     "figures": "impactlab.cli.results:figures",
     "animate": "impactlab.cli.animate:animate",
     "report": "impactlab.cli.results:report",
+    "compare": "impactlab.cli.results:compare",
     "export": "impactlab.cli.results:export",
     "index": "impactlab.cli.results:index",
     "clean": "impactlab.cli.studies:clean",

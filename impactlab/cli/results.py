@@ -188,3 +188,27 @@ def index(
     path = output or results / "index.html"
     write_index(results, path)
     print(f"{path}: the list of all reports")
+
+
+def compare(
+    studies: Annotated[
+        list[str],
+        typer.Argument(metavar="STUDY...", help="Two or more studies with results, by name."),
+    ],
+    results: Annotated[Path, typer.Option(help="Folder of results.")] = RESULTS,
+    output: Annotated[
+        Path | None, new_folder(help="Default: compare-A-B, beside their results.")
+    ] = None,
+) -> None:
+    """Compare the results of studies side by side, on one page.
+
+    It shows what differs in their files, each response that all of them have on common axes, and
+    the sensitivity indices of samples with the differences that chance does not explain. (To
+    compare a study with measurements, list these under `measurements` in its file.)
+    """
+    from impactlab.report.comparison import compare_results, study_folder
+
+    comparison = compare_results([study_folder(name, results) for name in studies], output)
+    folder = output or results / str(comparison.attrs["study"])
+    headline, *lines = str(comparison.attrs["answer"]).splitlines()
+    print(f"{folder / 'report.html'}: {headline}", *lines, sep="\n")

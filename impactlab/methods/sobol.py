@@ -115,7 +115,7 @@ def _of_first(size: int, outputs: Floats, sample: Sample) -> dict[str, Floats]:
     if still(start, varying(start, sample)):
         return {}
     interactions = start.size == outputs.size  # pairs have no indices by samples
-    replicated = estimates(Outputs.of(start, sample).means(interactions), factors)
+    replicated = leaving_out(start, sample, interactions)
     indices = {name: values[0] for name, values in replicated.items()}
     for name in replicated.keys() - {"base_correlation"}:
         indices[f"{name}_interval"] = half_width(replicated[name][1:], sample.confidence)
@@ -123,6 +123,12 @@ def _of_first(size: int, outputs: Floats, sample: Sample) -> dict[str, Floats]:
     for name in {"second_order", "second_order_interval"} & indices.keys():
         indices[name] = _matrix(indices[name], factors)
     return indices
+
+
+def leaving_out(outputs: Floats, sample: Sample, interactions: bool = False) -> dict[str, Floats]:
+    """Return indices of all outputs (runs,), then without each replicate: (1 + replicates, ...)."""
+    means = Outputs.of(outputs, sample).means(interactions)
+    return estimates(means, len(sample.factors))
 
 
 def _matrix(values: Floats, factors: int) -> Floats:

@@ -46,7 +46,8 @@ def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
     Parameters
     ----------
     runs : xarray.Dataset
-        Runs of a study as in runs.nc, or the findings of a verification as in findings.nc.
+        Runs of a study as in runs.nc, the findings of a verification as in findings.nc, or a
+        comparison of studies as in comparison.nc.
     analysis : xarray.Dataset, optional
         Analysis of the runs as in analysis.nc; by default `analyse(runs)`.
 
@@ -65,6 +66,8 @@ def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
     ...     print(line)
     x1 (... %), x2 (... %) and x3 (... %) cause most of the scatter of the value.
     """
+    if runs.attrs.get("content") == "comparison":
+        return str(runs.attrs["answer"]).splitlines()
     if analysis is None and runs.attrs.get("content") != "findings":
         analysis = analyse(runs)
     headline, lines, _ = entries(runs, analysis)
@@ -103,8 +106,8 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None) -> tuple[str, list[li
     if over := history_entries(analysis):
         note += " Over time: generalised total order, of the variance added up over all times."
     room = LINES - 1 - bool(last)
-    before, after = _packed(first, 2), _packed(over, 1 if findings or first else 2)
-    lines = [*before, *_packed(findings, room - len(before) - len(after)), *after]
+    before, after = packed(first, 2), packed(over, 1 if findings or first else 2)
+    lines = [*before, *packed(findings, room - len(before) - len(after)), *after]
     return headline, [*lines, last] if last else lines, note
 
 
@@ -163,7 +166,8 @@ def _of_grid(
     return headline, [*effects.entries(runs, analysis, lead, shown), *findings], note
 
 
-def _packed(findings: list[Entry], lines: int) -> list[list[Entry]]:
+def packed(findings: list[Entry], lines: int) -> list[list[Entry]]:
+    """Return entries in at most so many lines."""
     size = max(1, -(-len(findings) // max(1, lines)))  # entries per line
     return [findings[first : first + size] for first in range(0, len(findings), size)]
 

@@ -64,11 +64,15 @@ _COLUMNS = {
 
 @dataclass(frozen=True)
 class Cell:
-    """Text of one cell. kind: "", "number", "muted" or "warning"; detail: small print below."""
+    """Text of one cell. kind: "", "number", "muted" or "warning"; detail: small print below.
+
+    link: a file that the text leads to, relative to the page.
+    """
 
     text: str
     kind: str = ""
     detail: str = ""
+    link: str = ""
 
 
 Row = Sequence[Cell | str]

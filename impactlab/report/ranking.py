@@ -148,7 +148,7 @@ def _written(
         return in_units(runs[response], value, margin)
     if family is not SOBOL:
         return with_margin(value, margin)
-    text = _share(value, margin, error)
+    text = share(value, margin, error)
     first = measures.index(analysis, "first_order", response)
     surplus = value - first.values[number]  # none where the first order ranks
     reach = margin + first.margins[number] + error + first.numerical[number]
@@ -160,7 +160,7 @@ def _written(
     return text
 
 
-def _share(value: float, margin: float, error: float) -> str:
+def share(value: float, margin: float, error: float) -> str:
     """Return a share of the variance, its half-width and a numerical error that is larger."""
     decimals = 0 if margin >= _COARSE and value >= _SMALL else 1
     within = max(100 * margin, 0.1)

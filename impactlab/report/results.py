@@ -7,13 +7,15 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
+import numpy as np
 import xarray as xr
 
 from impactlab.figures.draw import draw_all, draw_findings
 from impactlab.figures.record import CAPTIONS, listed
-from impactlab.files import check_source, checked, read_netcdf
+from impactlab.files import check_source, checked, identity, opened, read_netcdf
 from impactlab.report import study, verification
 from impactlab.report.answer import answers
 from impactlab.report.page import described, leading, write_page
@@ -36,6 +38,8 @@ class Kind:
 
 
 RUNS = Kind(("runs.nc", "analysis.nc"), draw_all, study.write_report, study.counts)
+COMPARISON = "comparison.nc"
+"""The file of studies side by side, see report.comparison."""
 FINDINGS = Kind(
     ("findings.nc",), draw_findings, verification.write_verification, verification.counts
 )
@@ -70,36 +74,65 @@ def open_stored(paths: Sequence[Path]) -> Iterator[tuple[Kind, list[xr.Dataset]]
             yield kind, [first, analysis]
 
 
+def _entry(report: Path) -> dict[str, Any] | None:
+    """Return what the index says of a report; None without the results that it was made from.
+
+    `compared` lists the studies of a comparison, none for other reports.
+    """
+    if (file := report.with_name(COMPARISON)).exists():
+        comparison = read_netcdf(file, "comparison")
+        names = np.atleast_1d(comparison.attrs["studies"]).tolist()
+        made_from = comparison.attrs["made_from"].split()
+        for name in names:
+            analysis = report.parents[1] / name / RUNS.files[1]
+            if not analysis.exists():
+                return None
+            with opened(analysis, "analysis") as stored:
+                if identity(stored) not in made_from:
+                    return None
+        size = {"size": f"{len(names)} studies side by side", "failed": ""}
+        answer = answers(comparison)[0]
+        return described(comparison) | size | {"answer": answer, "compared": names}
+    for kind in (RUNS, FINDINGS):
+        files = [*map(report.with_name, kind.files)]
+        if not files[0].exists():
+            continue
+        try:
+            with open_stored(files) as (_, datasets):
+                size, failed = kind.counts(datasets[0])
+                entry = described(datasets[0]) | {"size": size, "failed": failed, "compared": []}
+                return entry | {"answer": answers(*datasets)[0]}
+        except (OSError, ValueError):  # no analysis, that of other runs, or damaged
+            return None
+    return None
+
+
 def write_index(results: Path, path: Path) -> None:
     """Write a page with each report under `results` (results/NAME/report.html): link and answer.
 
-    The page on the paper (results/paper) is linked where it exists. A report without the stored
-    results that it was made from is left out. Raises OSError when `path` cannot be written.
+    The studies of a comparison follow it in its order; all else is in the order of names. The page
+    on the paper (results/paper) is linked where it exists. A report without the stored results that
+    it was made from is left out. Raises OSError when `path` cannot be written.
     """
 
     def address(target: Path) -> str:
         return quote(Path(os.path.relpath(target, path.parent)).as_posix())
 
-    entries = []
+    entries, places = [], dict[str, tuple[str, int]]()
     for report in sorted(results.glob("*/report.html")):
-        for kind in (RUNS, FINDINGS):
-            if report.with_name(kind.files[0]).exists():
-                try:
-                    with open_stored([*map(report.with_name, kind.files)]) as (_, datasets):
-                        size, failed = kind.counts(datasets[0])
-                        entry = described(datasets[0]) | {"size": size, "failed": failed}
-                        entry["answer"] = answers(*datasets)[0]
-                except (OSError, ValueError):  # no analysis, that of other runs, or damaged
-                    continue
-                figures = report.with_name("figures")
-                captions = listed(figures) if (figures / CAPTIONS).exists() else {}
-                name = leading(captions)  # the figure that answers the study's question
-                entry |= {"study": report.parent.name, "report": address(report)}
-                if (figures / f"{name}.svg").exists():
-                    picture = address(figures / f"{name}.svg")
-                    entry |= {"thumbnail": picture, "alt": captions[name]["title"]}
-                entries.append(entry)
-                break
+        if (entry := _entry(report)) is None:
+            continue
+        for place, name in enumerate(entry.pop("compared")):
+            places.setdefault(name, (report.parent.name, place + 1))
+        figures = report.with_name("figures")
+        captions = listed(figures) if (figures / CAPTIONS).exists() else {}
+        name = leading(captions)  # the figure that answers the study's question
+        entry |= {"study": report.parent.name, "report": address(report)}
+        if (figures / f"{name}.svg").exists():
+            picture = address(figures / f"{name}.svg")
+            entry |= {"thumbnail": picture, "alt": captions[name]["title"]}
+        entries.append(entry)
+    entries.sort(key=lambda entry: places.get(entry["study"], (entry["study"], 0)))
     claims = results / "paper" / "claims.html"
     paper = address(claims) if claims.exists() else ""
     write_page("index.html.j2", path, entries=entries, paper=paper, index="")

@@ -100,6 +100,13 @@ print(json.dumps([[run[name].item() for name in names] for run in runs]))
 """
 
 
+def test_a_comparison_is_made_where_all_of_its_studies_are(folder):
+    three = "sobol_fast,sobol,sobol_slow"
+    planned = snakemake(folder, "--dry-run", studies=three).stdout
+    assert "results/sobol_velocities/report.html" in planned
+    assert "rule comparison:" not in snakemake(folder, "--dry-run", studies="sobol,smoke").stdout
+
+
 def test_stored_runs_are_those_of_the_library(folder):
     """Bit by bit, in a process that is not this one, which has compiled some kernels itself."""
     runs = xr.load_dataset(folder / "results" / "smoke" / "runs.nc")

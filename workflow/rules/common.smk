@@ -25,7 +25,8 @@ class StepLines(logging.Handler):
         elif event == LogEvent.JOB_FINISHED:
             self.pace.finish(record.job_id, now)
         elif event == LogEvent.JOB_INFO and record.rule_name != "all" and not workflow.dryrun:
-            study, left = record.wildcards.get("study", ""), self.pace.left(now)
+            names = [record.wildcards.get(key, "") for key in ("study", "comparison")]
+            study, left = "".join(names), self.pace.left(now)
             done = f"{len(self.pace.ratios)} of {self.total} done, " if self.pace.ratios else ""
             left = "" if left is None else f"about {duration(left)} left"
             self.pace.start(record.jobid, record.rule_name, study, now)
@@ -75,6 +76,11 @@ def asked_studies(asked):
             f"{', '.join(sorted(DESCRIBED))}"
         )
     return names
+
+
+def comparable(comparisons):
+    """Return the names of the comparisons whose studies are all among those to be made."""
+    return [name for name, studies in comparisons.items() if set(studies) <= set(STUDIES)]
 
 
 def has(study, *traits):
