@@ -66,7 +66,15 @@ CATALOGUE = {figure.name: figure for figure in (*ANSWERS, *INDICES)}
 """Every figure by name, in the order of the report, but for those of a single response."""
 
 
-_LEADING = (*(family.figure for family in FAMILIES), "parameter_effects")
+_LEADING = (
+    *(family.figure for family in FAMILIES),
+    "parameter_effects",
+    "nodes_convergence",
+    "element_size_convergence",
+    "time_step_convergence",
+    "points_convergence",
+    "response_distributions",
+)
 """Figures of a panel per response whose panel of the headline's response leads a report."""
 LEAD = "lead"
 """Name of the figure that shows the response of the answer's headline alone."""
@@ -78,7 +86,7 @@ def _lead(runs: xr.Dataset, analysis: xr.Dataset, base: Figure) -> Figure:
     """Return a figure of one panel per response with the panel of the headline's response alone."""
     names = access.responses(runs)
     if base is not grids.parameter_effects:
-        names = [name for name in names if access.known(analysis, name)]
+        names = [name for name in names if access.known(analysis, name)] or names
         names = [name for name in names if access.is_sound(analysis, name)] or names
     response = access.leading(runs, names)
 

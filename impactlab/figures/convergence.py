@@ -29,22 +29,11 @@ _FEWEST = 3
 _NAMED = 3  # largest number of cases that a caption names
 CAPTION = (
     "Difference to the limit, relative to it: Richardson's value, or where there is none that of "
-    "the least-squares fit, or else the finest value. Thin dashes: the order p of that limit (in "
-    "brackets where it is assumed, not observed). The bar at the finest value reaches up to its "
-    "numerical uncertainty; an open marker is this uncertainty where the finest value is itself "
-    "the limit. What has no limit by design is drawn as it is."
+    "the least-squares fit, or else the finest value. Thin dashes: the order p of that limit, over "
+    "the curves (in brackets where it is assumed, not observed). The bar at the finest value "
+    "reaches up to its numerical uncertainty; an open marker is this uncertainty where the finest "
+    "value is itself the limit. What has no limit by design is drawn as it is."
 )
-_BESIDE: dict[str, Any] = {
-    "loc": "lower left",
-    "bbox_to_anchor": (1.0, 0.0),
-    "borderaxespad": 0.0,
-    "fontsize": 6,
-    "handlelength": 4.0,
-    "handletextpad": 0.4,
-    "labelspacing": 0.2,
-    "borderpad": 0.1,
-}
-"""Legend of the orders, to the right of a panel."""
 _DASHED: dict[str, Any] = {"linestyle": (0, (2, 1.5)), "linewidth": 0.6}
 _BEAM = ("beam_span", "beam_width", "beam_depth", "beam_density", "beam_youngs_modulus")
 _INPUTS = (*_BEAM, "beam_model", "scheme", "nodes", "courant", "duration")
@@ -128,14 +117,9 @@ def draw(
             _draw_values(ax, runs, name, spacing, selected)
             continue
         difference = _relative_difference(runs, analysis, axis, name)
-        orders = []
         for curve, errors in _above_round_off(difference, selected):
             curves.add(ax, spacing, errors, curve)
-            line, read = ax.lines[-1], partial(_read, analysis, axis.name, name, curve.where)
-            if text := _draw_trend(ax, spacing, errors, read):
-                orders.append((line, text))
-        if orders:
-            ax.legend(*zip(*orders, strict=True), **_BESIDE)
+            _draw_trend(ax, spacing, errors, partial(_read, analysis, axis.name, name, curve.where))
         if not ax.lines:
             enough = bool((difference.count(axis.dim) > 1).any())
             responses_grid.empty(ax, "same on every grid" if enough else "too few values")
@@ -145,7 +129,25 @@ def draw(
         ax.plot(ends, guide, label="_guide: second order", linestyle="-", **style.GUIDE)
         scales.logarithmic(ax, "y", scales.drawn(ax, "y"))
         _scale_spacing(ax, spacing)
+        corner: dict[str, Any] = {"xycoords": "axes fraction", "ha": "right"}
+        text = _orders(analysis, axis.name, name, selected)
+        style.note(ax, text, (0.99, 0.04), (0, 0), warning=False, **corner)
     return selected.finish(figure, label, _DIFFERENCE)
+
+
+def _orders(analysis: xr.Dataset, axis: str, name: str, selected: Plan) -> str:
+    """Return the range of the curves' orders, and in brackets that of assumed ones: "p = 2 [1]"."""
+    orders: dict[bool, list[str]] = {True: [], False: []}
+    for curve in selected.curves:
+        order, is_observed = _order(partial(_read, analysis, axis, name, curve.where))
+        if np.isfinite(order):
+            orders[is_observed].append(f"{order:.2f}" if is_observed else f"{order:g}")
+    observed, assumed = (
+        " to ".join(dict.fromkeys((min(texts), max(texts)))) if texts else ""
+        for texts in orders.values()
+    )
+    text = " ".join(filter(None, (observed, f"[{assumed}]" if assumed else "")))
+    return f"p = {text}" if text else ""
 
 
 def _draw_values(ax: Axes, runs: xr.Dataset, name: str, spacing: Floats, selected: Plan) -> None:
@@ -247,10 +249,16 @@ def _read(analysis: xr.Dataset, axis: str, name: str, where: dict[str, int], key
     return float(values.isel(where, missing_dims="ignore"))
 
 
-def _draw_trend(ax: Axes, spacing: Floats, errors: Floats, read: Callable[[str], float]) -> str:
-    """Draw the order through the three finest errors, and the finest's bar; return its label."""
-    richardson = bool(np.isfinite(read("extrapolated")))
-    order = read("observed_order" if richardson else "fit_order")
+def _order(read: Callable[[str], float]) -> tuple[float, bool]:
+    """Return the order of the limit, NaN without one, and whether it was observed, not assumed."""
+    if np.isfinite(read("extrapolated")):
+        return read("observed_order"), True
+    return read("fit_order"), read("fit_expansion") == 0
+
+
+def _draw_trend(ax: Axes, spacing: Floats, errors: Floats, read: Callable[[str], float]) -> None:
+    """Draw the order through the three finest errors, and the finest's bar."""
+    order, _ = _order(read)
     near, line, uncertainty = np.argsort(spacing)[:_FEWEST], ax.lines[-1], read("uncertainty")
     colour, marker = line.get_color(), line.get_marker()
     scale = np.log(errors[near]) - order * np.log(spacing[near])
@@ -268,10 +276,6 @@ def _draw_trend(ax: Axes, spacing: Floats, errors: Floats, read: Callable[[str],
         else:  # no cap without its marker
             look = {"marker": marker, "markerfacecolor": "white"}
         ax.plot(position, uncertainty, color=colour, linestyle="", label="_bar", **look)
-    if not np.isfinite(order):
-        return ""
-    observed = richardson or read("fit_expansion") == 0  # else assumed
-    return f"p = {order:.2f}" if observed else f"[p = {order:g}]"
 
 
 def _scale_spacing(ax: Axes, spacing: Floats) -> None:

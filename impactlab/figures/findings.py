@@ -26,7 +26,8 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "failed": {"marker": "X", "color": style.COLOURS[1], "markersize": 6.0},
 }
 _FEW = 25  # number of points up to which a curve has markers
-_TITLE, _LABEL = 46, 32  # letters per line of a panel's title, and of the label at its side
+_TITLE, _LABEL = 92, 32  # letters of the titles of a row, and per line of the label at a side
+_MANY = 6  # largest number of panels in two columns
 
 
 def overview_caption(outcomes: Sequence[Outcome]) -> str:
@@ -101,51 +102,55 @@ def _ratios(outcome: Outcome) -> Floats:
 def curves_caption(outcome: Outcome) -> str:
     """Return the caption, which tells the two kinds of curves apart."""
     return (
-        "Coloured lines or filled markers: the solver. Black broken lines or open markers: "
+        "Coloured lines or filled markers: the solver. Broad grey lines or open black markers: "
         f"independent ({outcome.source})."
     )
 
 
 @style.paper
 def plot_curves(outcome: Outcome) -> Figure:
-    """Draw the check's panels in two columns, with one legend where it is the same in all."""
+    """Draw the check's panels, with one legend."""
     panels = [panel for panel in outcome.finding.panels if panel.curves]
-    figure, axes = style.panels(len(panels), columns=2, height=58.0)
-    looks = [_looks(panel) for panel in panels]
-    for ax, panel, look in zip(axes, panels, looks, strict=True):
-        _draw_panel(ax, panel, look)
-    if all(look == looks[0] for look in looks):
-        style.legend(figure, order=list(looks[0]))
-    else:
-        style.panel_legends(figure)
+    columns = 3 if len(panels) == 3 or len(panels) > _MANY else 2
+    figure, axes = style.panels(len(panels), columns=columns, height=58.0)
+    looks = _looks(panels)
+    for ax, panel in zip(axes, panels, strict=True):
+        _draw_panel(ax, panel, looks, columns)
+    style.legend(figure, order=list(looks))
     return figure
 
 
-def _looks(panel: CurvePanel) -> dict[str, dict[str, Any]]:
-    """Return the looks by label: the solver's coloured, then independent ones black and broken."""
+def _looks(panels: Sequence[CurvePanel]) -> dict[str, dict[str, Any]]:
+    """Return the looks by label: the solver's coloured, then independent ones grey and broad."""
     ours, independent = (
-        dict.fromkeys(_label(c, panel.curves) for c in panel.curves if c.independent == kind)
+        dict.fromkeys(
+            _label(curve, panel.curves)
+            for panel in panels
+            for curve in panel.curves
+            if curve.independent == kind
+        )
         for kind in (False, True)
     )
-    count, broken = len(style.COLOURS), style.LINES[1:]
+    count = len(style.COLOURS)
     looks: dict[str, dict[str, Any]] = {}
     for number, label in enumerate(ours):
         looks[label] = {
             "color": style.COLOURS[number % count],
             "linestyle": style.LINES[number // count % len(style.LINES)],
-            "linewidth": 1.6,
+            "linewidth": 1.2,
             "zorder": 3.0 - 0.01 * number,
             # one further each time round, so that no colour has its marker twice
             "marker": style.MARKERS[(number + number // count) % len(style.MARKERS)],
         }
     for number, label in enumerate(independent):
         looks[label] = {
-            "color": "black",
-            "linestyle": broken[number % len(broken)],
-            "linewidth": 0.9,
-            "zorder": 4.0,
+            "color": "0.72",
+            "linestyle": style.LINES[number % len(style.LINES)],
+            "linewidth": 2.8,
+            "zorder": 2.0,  # beneath the colours
             "marker": style.MARKERS[number % len(style.MARKERS)],
             "markerfacecolor": "none",
+            "markeredgecolor": "black",
             "markersize": 6.5,
             "markeredgewidth": 0.8,
         }
@@ -158,11 +163,13 @@ def _label(curve: Curve, curves: Sequence[Curve]) -> str:
     return f"{curve.label}, independent" if curve.independent and same else curve.label
 
 
-def _draw_panel(ax: Axes, panel: CurvePanel, looks: dict[str, dict[str, Any]]) -> None:
+def _draw_panel(
+    ax: Axes, panel: CurvePanel, looks: dict[str, dict[str, Any]], columns: int
+) -> None:
     across, up = _unit(panel, "x"), _unit(panel, "y")
-    ax.set_title(fill(labels.sentence(panel.title), width=_TITLE), loc="left")
-    label = fill(labels.axis(panel.y[0], up.symbol), width=_LABEL)
-    ax.set(xlabel=labels.axis(panel.x[0], across.symbol), ylabel=label)
+    ax.set_title(fill(labels.sentence(panel.title), width=_TITLE // columns), loc="left")
+    ax.set_xlabel(labels.wrapped_axis(panel.x[0], across.symbol, _LABEL))
+    ax.set_ylabel(labels.wrapped_axis(panel.y[0], up.symbol, _LABEL))
     for curve in sorted(panel.curves, key=lambda curve: curve.independent):
         x, y = across(curve.x), up(curve.y)
         if panel.log:

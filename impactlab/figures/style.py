@@ -280,38 +280,10 @@ def finish(
     return figure
 
 
-def panel_legends(figure: Figure) -> None:
-    """Add a legend above each panel, under its title; the figure grows to hold them."""
-    rows = 0
-    for axes in figure.axes:
-        handles, labels = axes.get_legend_handles_labels()
-        place = axes.get_subplotspec()
-        assert place is not None
-        width = figure.get_figwidth() / MILLIMETRE / place.get_gridspec().ncols - _MARGIN
-        columns = _columns(width, labels, letter=1.4)
-        rows = max(rows, math.ceil(len(labels) / columns))
-        if len(labels) > 1:
-            axes.legend(handles, labels, title=axes.get_title(loc="left"), ncols=columns, **_ABOVE)
-            axes.set_title("", loc="left")
-    lines = figure.axes[0].get_subplotspec().get_gridspec().nrows  # type: ignore[union-attr]
-    grow(figure, lines * rows * 4.2)
-
-
-_MARGIN = 15.0  # left of a panel, for numbers and label, mm
-_ABOVE: dict[str, Any] = {
-    "loc": "lower left",
-    "bbox_to_anchor": (0.0, 1.0),
-    "borderaxespad": 0.0,
-    "borderpad": 0.2,
-    "alignment": "left",
-    "title_fontsize": 8,
-}
-
-
-def _columns(width: float, labels: list[str], letter: float = 1.45) -> int:
+def _columns(width: float, labels: list[str]) -> int:
     """Return the columns that fit into a width in mm; letters are up to 1.45 mm wide at 7 pt."""
     longest = max((len(label) for label in labels), default=1)
-    fit = int(width / (letter * longest + 15.5))
+    fit = int(width / (1.45 * longest + 15.5))
     return max(1, min(fit, len(labels)))
 
 

@@ -283,3 +283,18 @@ def test_the_leading_panel_ranks_by_its_own_response(sample_study):
     index.loc["contact_duration", "sphere_radius"] = 0.9
     (panel,) = applicable(runs, analysis)[LEAD].plot(runs, analysis).axes
     assert panel.get_yticklabels()[0].get_text() == "depth of the beam"
+
+
+@pytest.mark.parametrize(
+    ("study", "title"),
+    [
+        ("discretisation_study", "Convergence in nodes: peak force"),
+        ("time_step_study", "Convergence in the time step: peak force"),
+    ],
+)
+def test_one_panel_leads_a_convergence_study(study, title, request):
+    runs, analysis = request.getfixturevalue(study)
+    lead, *_ = applicable(runs, analysis).values()
+    assert (lead.name, lead.title) == (LEAD, title)
+    (panel,) = lead.plot(runs, analysis).axes
+    assert panel.get_title(loc="left") == "Peak force"
