@@ -127,10 +127,13 @@ def tell_apart(names: Sequence[str], runs: Sequence[xr.Dataset]) -> list[str]:
 def _subject(studies: Sequence[StudyResults]) -> str:
     """Return what the studies differ in: "impact velocity 1 m/s, 5 m/s and 15 m/s"."""
     runs = [study.runs for study in studies]
-    listed = labels.listing([study.label for study in studies])
-    names = differing(runs)
-    valued = names and studies[0].label.startswith(labels.value(runs[0][names[0]], 0))
-    return f"{labels.parameter(runs[0][names[0]])} {listed}" if valued else listed
+    names, texts = differing(runs), [study.label for study in studies]
+    if not names or not texts[0].startswith(labels.value(runs[0][names[0]], 0)):
+        return labels.listing(texts)
+    unit = labels.unit(runs[0][names[0]])
+    if all(text.endswith(unit) for text in texts):
+        texts = [text.removesuffix(unit) for text in texts[:-1]] + texts[-1:]
+    return f"{labels.parameter(runs[0][names[0]])} {labels.listing(texts)}"
 
 
 def _dataset(studies: Sequence[StudyResults], found: changes.Findings) -> xr.Dataset:

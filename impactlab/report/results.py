@@ -90,9 +90,8 @@ def _entry(report: Path) -> dict[str, Any] | None:
             with opened(analysis, "analysis") as stored:
                 if identity(stored) not in made_from:
                     return None
-        size = {"size": f"{len(names)} studies side by side", "failed": ""}
-        answer = answers(comparison)[0]
-        return described(comparison) | size | {"answer": answer, "compared": names}
+        answer, size = answers(comparison)[0], f"{len(names)} studies side by side"
+        return described(comparison) | {"size": size, "answer": answer, "compared": names}
     for kind in (RUNS, FINDINGS):
         files = [*map(report.with_name, kind.files)]
         if not files[0].exists():
