@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from impactlab.cli.interrupt import stop_kept
-from impactlab.cli.options import given, new_folder
+from impactlab.cli.options import given, new_file, new_folder
 
 if TYPE_CHECKING:
     from impactlab.fem3d.plan import RunPlan
@@ -60,6 +60,10 @@ def witness(
         Path | None,
         new_folder(help="Default: results/NAME/witness, with the options given in its name."),
     ] = None,
+    animate: Annotated[
+        Path | None,
+        new_file(".html", ".gif", ".mp4", help="Animate the section through the contact."),
+    ] = None,
     deck: Annotated[
         str, typer.Option(help="abaqus or calculix: write its input deck, and solve nothing.")
     ] = "",
@@ -99,7 +103,7 @@ def witness(
     if deck and not dry_run:
         _write_deck(plan, deck, folder, plastic=not elastic)
     elif not dry_run:
-        _solve(plan, folder, workers)
+        _solve(plan, folder, workers, animate)
 
 
 def _planned(study: Path | None, texts: Mapping[str, str]) -> RunPlan:
@@ -151,12 +155,18 @@ def _watched() -> Iterator[Progress]:
         yield progress
 
 
-def _solve(plan: RunPlan, folder: Path, workers: int) -> None:
+def _solve(plan: RunPlan, folder: Path, workers: int, animate: Path | None) -> None:
     """Solve and compare; exit with 130 if interrupted, with 1 if the 3-D run failed."""
     from impactlab.fem3d.comparison import compare, print_comparison
 
-    solid, responses, folder = compare(plan, folder, workers=workers, watched=_watched())
+    solid, responses, folder = compare(
+        plan, folder, workers=workers, watched=_watched(), frames=animate is not None
+    )
     print_comparison(responses, solid)
+    if animate:
+        from impactlab.fem3d.figures.motion import animation
+
+        print(animation(solid).save(animate))
     stopped = str(solid.attrs.get("stopped", ""))
     log = logging.getLogger("impactlab")
     if stopped.startswith("interrupted"):

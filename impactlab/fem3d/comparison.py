@@ -33,13 +33,19 @@ _HEAD = ("response", "units", "model", "value", "difference_percent", "missing_b
 
 
 def compare(
-    plan: RunPlan, folder: Path, *, workers: int, watched: AbstractContextManager[Progress]
+    plan: RunPlan,
+    folder: Path,
+    *,
+    workers: int,
+    watched: AbstractContextManager[Progress],
+    frames: bool = False,
 ) -> tuple[xr.Dataset, xr.Dataset, Path]:
     """Solve a planned case by the 3-D FE model and the beam models; write and draw the answers.
 
     folder: gets witness.nc, witness.vtu, beams.nc, comparison.csv and figures/. If the 3-D run
     stopped before its end, and the folder holds a complete run, FOLDER_stopped gets them instead.
     workers: number of threads. watched: is entered around the 3-D run, and gives its `progress`.
+    frames: see solve_on.
 
     Returns the answers of the 3-D FE model, the responses of all models (see compared), and the
     folder where the files lie. Answers are on disk before anything is made of them. Raises OSError
@@ -53,7 +59,14 @@ def compare(
         complete = False
     with watched as progress:
         mesh, impact = plan.solved_mesh(), plan.case.impact
-        solid = solve_on(mesh, impact, duration=plan.duration, threads=workers, progress=progress)
+        solid = solve_on(
+            mesh,
+            impact,
+            duration=plan.duration,
+            threads=workers,
+            progress=progress,
+            frames=frames,
+        )
     if "stopped" in solid.attrs and complete:
         folder = folder.parent / f"{folder.resolve().name}_stopped"
     write_netcdf(solid, folder / "witness.nc", "witness")

@@ -41,10 +41,10 @@ RATE = 25
 FILE = "animation.html"
 """Name of the animation among the figures of a study of one run."""
 _FRAMES = 120  # of that one
-_SIZE, _DPI = (7.2, 5.2), 100  # inches; an even number of pixels, which MP4 needs
+SIZE, DPI = (7.2, 5.2), 100  # inches; an even number of pixels, which MP4 needs
 _BALL = 9.0  # radius of the sphere in points: it is no part of the scales
 _LEAST = 1e-5  # smallest strain with a colour
-_Update = Callable[[int], None]
+Update = Callable[[int], None]
 Pixels = NDArray[np.uint8]
 """An image in RGB, (height, width, 3)."""
 
@@ -77,7 +77,7 @@ class Animation:
     """
 
     def __init__(
-        self, figure: Figure, moving: Sequence[Any], update: _Update, times: Sequence[str]
+        self, figure: Figure, moving: Sequence[Any], update: Update, times: Sequence[str]
     ) -> None:
         """Take a figure and what moves in it."""
         self.frames, self._times = len(times), times
@@ -173,7 +173,7 @@ class Animation:
         return re.sub(r"{{ (\w+) }}", lambda match: texts[match[1]], page)
 
     def _repr_html_(self) -> str:
-        width, height = (round(_DPI * inches) for inches in self._figure.get_size_inches())
+        width, height = (round(DPI * inches) for inches in self._figure.get_size_inches())
         look = f'width="{width + 20}" height="{height + 80}" style="border: 0"'
         return f'<iframe srcdoc="{html.escape(self._page())}" {look}></iframe>'
 
@@ -237,13 +237,21 @@ def of_study(runs: xr.Dataset) -> Animation | None:
     return animation(with_fields(runs.squeeze(access.design_dims(runs)), _FRAMES))
 
 
+Part = tuple[list[Any], Update]
+"""Artists of a panel, and what moves them to a frame."""
+
+
 @style.paper
 def animation(run: xr.Dataset) -> Animation:
     """Return the moving picture of a run with fields over time."""
-    figure = Figure(figsize=_SIZE, dpi=_DPI, layout="constrained")
+    figure = Figure(figsize=SIZE, dpi=DPI, layout="constrained")
     beam, zone, contact = figure.subplots(3, 1, height_ratios=[1.25, 0.85, 1.0])
     zone.sharex(beam)
-    parts = [_beam(beam, run), _zone(zone, run), _force(contact, run)]
+    return composed(figure, run, [_beam(beam, run), _zone(zone, run), force_panel(contact, run)])
+
+
+def composed(figure: Figure, run: xr.Dataset, parts: Sequence[Part]) -> Animation:
+    """Return the animation of a figure on `field_time`, under a title with a clock."""
     speed = labels.amount(run["velocity"], run["velocity"].item(), 3)
     figure.suptitle(f"Impact at {speed}", x=0.01, ha="left", fontsize=9)
     clock = figure.text(0.99, 0.985, "", ha="right", va="top", fontsize=9)
@@ -261,16 +269,12 @@ def animation(run: xr.Dataset) -> Animation:
     return Animation(figure, [*moving, clock], update, times)
 
 
-_Part = tuple[list[Any], _Update]
-"""Artists of a panel, and what moves them to a frame."""
-
-
 def _at_frames(run: xr.Dataset, name: str) -> Floats:
     """Return a history at the times of the fields, in SI units."""
     return np.asarray(np.interp(run["field_time"], run["time"], run[name]))
 
 
-def _beam(ax: Axes, run: xr.Dataset) -> _Part:
+def _beam(ax: Axes, run: xr.Dataset) -> Part:
     place, depth = display(run["x"]), display(run["deflection_over_time"])
     x, shapes = place(run["x"]), depth(run["deflection_over_time"])
     sphere = depth(_at_frames(run, "sphere_displacement"))
@@ -300,7 +304,7 @@ def _beam(ax: Axes, run: xr.Dataset) -> _Part:
     return [line, ball], move
 
 
-def _zone(ax: Axes, run: xr.Dataset) -> _Part:
+def _zone(ax: Axes, run: xr.Dataset) -> Part:
     strain = run["equivalent_plastic_strain_over_time"]
     place, depth, unit = display(run["x"]), display(run["z"]), display(strain)
     x, z, fields = place(run["x"]), depth(run["z"]), unit(strain)
@@ -328,7 +332,8 @@ def _zone(ax: Axes, run: xr.Dataset) -> _Part:
     return [mesh], move
 
 
-def _force(ax: Axes, run: xr.Dataset) -> _Part:
+def force_panel(ax: Axes, run: xr.Dataset) -> Part:
+    """Draw the contact force over time, with a marker that moves."""
     time, unit = display(run["time"]), display(run["contact_force"])
     times, forces = time(run["field_time"]), unit(_at_frames(run, "contact_force"))
     ax.plot(time(run["time"]), unit(run["contact_force"]), color="0.6", linewidth=0.9)

@@ -9,6 +9,7 @@ import meshio
 import pytest
 import xarray as xr
 from command_line import here
+from PIL import Image
 
 from impactlab.fem3d.plan import case_of
 from impactlab.fem3d.solver import solve
@@ -66,8 +67,10 @@ def test_the_papers_case_is_solved_compared_drawn_and_kept(impactlab, tmp_path):
 
 def test_a_study_gives_the_case_and_options_change_it(impactlab, tmp_path, undrawn):
     asked = ("studies/some.yaml", "--velocity", "3 m/s", "--output", "here")
-    code, said = impactlab("witness", *asked, *COARSE)
+    code, said = impactlab("witness", *asked, *COARSE, "--animate", "contact.gif")
     assert code == 0, said
+    with Image.open("contact.gif") as moving:
+        assert moving.n_frames > 10
     held = "some.yaml varies parameters of which this command takes one value: contact = stronge"
     assert held in said
     beams = xr.load_dataset(tmp_path / "here" / "beams.nc")

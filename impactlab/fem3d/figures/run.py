@@ -15,14 +15,12 @@ from matplotlib.patches import Patch, Rectangle
 from numpy.typing import NDArray
 
 from impactlab.fem3d.solver.evaluation import PLASTIC_ZONE_STRAIN
-from impactlab.fem3d.solver.mesh import BEAM, FACES
+from impactlab.fem3d.solver.mesh import BEAM, plane_faces
 from impactlab.figures import labels, record, scales, style
 from impactlab.figures.draw import draw
 from impactlab.figures.labels import display
 from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.types import Floats
-
-_FLAT = 1e-6  # distance from the plane, over the element size, that counts as zero
 
 
 def faces(solid: xr.Dataset, axis: int) -> tuple[Floats, NDArray[np.int64]]:
@@ -32,11 +30,8 @@ def faces(solid: xr.Dataset, axis: int) -> tuple[Floats, NDArray[np.int64]]:
     element that each belongs to, (faces,).
     """
     nodes, elements = solid["node_position"].values, solid["element_nodes"].values
-    corners = elements[:, FACES]
-    near = np.abs(nodes[corners, axis]) < _FLAT * float(solid["element_size"])
-    element, face = np.nonzero(near.all(axis=2))
-    places = nodes[corners[element, face]]
-    return 1e3 * np.delete(places, axis, axis=2), element
+    element, corners = plane_faces(nodes, elements, axis, float(solid["element_size"]))
+    return 1e3 * np.delete(nodes[corners], axis, axis=2), element
 
 
 def _draw_faces(ax: Axes, polygons: Floats, across: str = "height", **looks: Any) -> PolyCollection:

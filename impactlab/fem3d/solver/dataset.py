@@ -11,6 +11,7 @@ import xarray as xr
 
 from impactlab.fem3d.solver.compiler import COMPILER
 from impactlab.fem3d.solver.evaluation import fields, plastic_responses, responses
+from impactlab.fem3d.solver.frames import FRAMES, Frames
 from impactlab.fem3d.solver.march import Energies, History, March, Progress
 from impactlab.fem3d.solver.mesh import Mesh, check_mesh, quarter_mesh
 from impactlab.fem3d.solver.system import System, ThreadPool
@@ -39,12 +40,13 @@ def solve_on(
     samples: int = 2001,
     threads: int = 1,
     progress: Progress | None = None,
+    frames: bool = False,
 ) -> xr.Dataset:
     """Solve one impact on `mesh`; contact law and model of the beam in `impact` play no part.
 
     duration: simulated time in s. samples: length of `time`, equally spaced. threads: the answers
     are the same to the last bit for any number. progress: called a hundred times per run with the
-    share done.
+    share done. frames: whether to keep the plane along the beam on `field_time` as often.
 
     Returns a Dataset with the histories and responses of impactlab.variables that a 3-D FE model
     has (`status` says why one is NaN), energies on `checkpoint`, plastic strains and von Mises
@@ -61,8 +63,17 @@ def solve_on(
     samples = integer("solve", "samples", samples, 2)
     with ThreadPool(integer("solve", "threads", threads, 1)) as pool:
         system = System(mesh, impact, pool)
-        history = March(system, impact).run(duration, progress)
-    return to_dataset(system, impact, history, samples)
+        march, kept = March(system, impact), Frames(system) if frames else None
+
+        def watch(share: float) -> None:
+            if kept:
+                kept.keep(march.history.moments[-1].time)
+            if progress:
+                progress(share)
+
+        history = march.run(duration, watch)
+    answers = to_dataset(system, impact, history, samples)
+    return named(answers.assign(kept.variables()), FRAMES) if kept else answers
 
 
 def compile_all() -> Path | None:

@@ -34,6 +34,7 @@ FACES = np.array(
     [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
 )
 """A hexahedron's nodes around each face, in the order of Abaqus' and CalculiX's S1 to S6."""
+_FLAT = 1e-6  # distance from a plane, over the element size, that counts as zero
 NEIGHBOURS = np.array(
     [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
 )
@@ -118,6 +119,19 @@ def _faces(pairs: int) -> Integers:
     number = np.arange(pairs, dtype=np.int32).reshape(math.isqrt(pairs), -1)
     corners = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
     return np.stack(corners, axis=-1).reshape(-1, 4)
+
+
+def plane_faces(
+    nodes: Floats, elements: Integers, axis: int, element_size: float
+) -> tuple[NDArray[np.int64], Integers]:
+    """Return the faces in the plane through the origin across `axis` (0, 1, 2: x, y, z).
+
+    Returns the element of each face, (faces,), and its nodes, (faces, 4).
+    """
+    corners = elements[:, FACES]
+    near = np.abs(nodes[corners, axis]) < _FLAT * element_size
+    element, face = np.nonzero(near.all(axis=2))
+    return element, corners[element, face]
 
 
 def check_mesh(mesh: Mesh, impact: Impact) -> None:
