@@ -113,6 +113,5 @@ def _section_fields(beam: Beam) -> dict[str, Any]:
         "mass_per_length": beam.mass_per_length,
         "rotary_inertia": section.rotary_inertia(metal.density),
         "shear_stiffness": beam.shear_coefficient * shear_modulus * section.area,
-        "plate_stiffness": section.plate_stiffness(metal.youngs_modulus, metal.poissons_ratio),
         "stress_per_moment": section.stress_per_moment,
     }

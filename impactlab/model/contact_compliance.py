@@ -18,12 +18,15 @@ Left out: what the section does in waves across the width or shorter than it, an
 circles than R/16 (from R/33 to R/8, 6 % of it).
 
 `contact_compliance: strip` gives the section's bending across the width its inertia
-(solver/strip.py). What that does in statics, on a long beam, is then no part of c and gamma:
+(solver/strip.py). Its stiffness D_s, inertia, lever l and twist T are tables, too, of the modes of
+the elastic section (tests/benchmarks/section_modes.py): one half as deep as wide takes 1.5 times as
+long to swing across as its plate would without shear and rotary inertia. What the bending across
+does in statics, on a long beam, is then no part of c and gamma:
 
-    c_w = B^2/D C/(2 sqrt(e t)),   gamma_w = B^2 (1 - nu^2) G,
-    t = 2/3 (1 - nu),  e = 4 (1 - nu^2),  G = (t - nu/3 - 4 t/e)/e,  C = 1/144 - G t
+    c_w = (l + nu T/(EI))^2/(2 sqrt(e T)),   gamma_w = -nu (2 l + nu T/(EI)),
+    e = D_s EI/(EI + nu^2 D_s)
 
-(deflection of the strip's middle by waves cos(k x): parts in k^-2 and in 1/(e + t (k B)^2)).
+(deflection of the strip's middle by waves cos(k x): parts in k^-2 and in 1/(e + T k^2)).
 
 The same statics have the stress under the force beyond the half-space's: that of beam theory by the
 moment, and one by the force, which keeps the section from bending freely beneath it. They are what
@@ -33,7 +36,7 @@ the width, -3/4 (1 + 5 nu)/sqrt(6 (1 + nu)) F/H^2 at the surface of a long beam,
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -122,6 +125,46 @@ SPHERE = (0.0158, -0.2795, -0.3359)
 """c_s = c E R at these ratios."""
 FREE_STRIP = 720.0 / 4.730041**4
 """Inertia of the shape y^2 - B^2/12 that swings as fast as a strip of plate with free edges."""
+STRIP_STIFFNESS = np.array(
+    [
+        [0.6567, 0.6432, 0.6237],
+        [0.6368, 0.6133, 0.5792],
+        [0.6203, 0.5816, 0.5247],
+        [0.6159, 0.5496, 0.4523],
+        [0.619, 0.5136, 0.3718],
+    ]
+)
+"""Stiffness of a strip against bending across over D B, for the first five depths."""
+STRIP_INERTIA = np.array(
+    [
+        [0.8216, 0.8198, 0.8169],
+        [0.9819, 0.9744, 0.962],
+        [1.3331, 1.3012, 1.2501],
+        [2.2055, 2.0587, 1.8379],
+        [3.7059, 3.2083, 2.5594],
+    ]
+)
+"""Inertia of a strip over that of the shape that swings as fast as a plate."""
+STRIP_LEVER = np.array(
+    [
+        [1.1162, 1.0893, 1.0515],
+        [1.1652, 1.1095, 1.0332],
+        [1.2753, 1.1571, 1.003],
+        [1.5215, 1.2347, 0.898],
+        [1.8985, 1.2639, 0.6177],
+    ]
+)
+"""Lever of the force on a strip over B^2/24."""
+STRIP_TWIST = np.array(
+    [
+        [0.6034, 0.65, 0.7061],
+        [0.4877, 0.5108, 0.5364],
+        [0.3734, 0.3764, 0.3761],
+        [0.2603, 0.2449, 0.2197],
+        [0.1778, 0.1469, 0.1033],
+    ]
+)
+"""Stiffness of a strip against twisting over (1 - nu) D B^3/6."""
 TIMOSHENKO_OPTIONS = {"contact_compliance": "half_space", "contact_prestress": "ignored"}
 """Options that only the Timoshenko beam has, with their values for other beams."""
 TIMOSHENKO_ALONE = "is for Timoshenko's beam: set beam_model: timoshenko"
@@ -144,12 +187,14 @@ def case_fields(impact: Impact) -> dict[str, Floats]:
 
     Raises ValueError as `contact_compliance` and `contact_stress`.
     """
-    local = "compliance", "bending_compliance", "width_inertia", "axis_compliance", "axis_bending"
+    local = "compliance", "bending_compliance", "axis_compliance", "axis_bending"
+    across = "width_stiffness", "width_inertia", "width_lever", "width_twist"
     stress = "stress_along", "stress_across"
-    fields: dict[str, Floats] = dict.fromkeys((*local, *stress), np.zeros(()))
+    fields: dict[str, Floats] = dict.fromkeys((*local, *across, *stress), np.zeros(()))
     if np.any(np.not_equal(impact.contact_compliance, "half_space")):
-        values = (*contact_compliance(impact), width_inertia(impact), *axis_compliance(impact))
+        values = *contact_compliance(impact), *axis_compliance(impact)
         fields |= zip(local, values, strict=True)
+        fields |= zip(across, bending_across(impact)[:4], strict=True)
     if np.any(np.not_equal(impact.contact_prestress, "ignored")):
         fields |= zip(stress, contact_stress(impact), strict=True)
     return fields
@@ -204,9 +249,9 @@ def contact_stress(impact: Impact) -> tuple[Floats, Floats]:
     _within_table(impact, applies, "Impact.contact_prestress = 'bending': ")
     square = impact.beam.depth * impact.beam.depth
     along, across = (_from_table(impact, table) for table in (STRESS_ALONG, STRESS_ACROSS))
-    nu = np.asarray(impact.beam.material.poissons_ratio)
-    strip = (1.0 - 2.0 * AT) * 0.75 * (1.0 + 5.0 * nu) / np.sqrt(6.0 * (1.0 + nu))
-    across = across + np.where(np.equal(impact.contact_compliance, "strip"), strip, 0.0)
+    strip = _strip(impact)
+    bent = (1.0 - 2.0 * AT) * 3.0 * strip.stretch * strip.decay / impact.beam.width
+    across = across + np.where(np.equal(impact.contact_compliance, "strip"), bent, 0.0)
     return np.where(applies, along / square, 0.0), np.where(applies, across / square, 0.0)
 
 
@@ -228,7 +273,8 @@ def _from_table(impact: Impact, table: Floats) -> Floats:
     """Return a table's value at the beam's depth over width and Poisson's ratio."""
     from scipy.interpolate import CubicSpline  # half a second to import, for few
 
-    log = np.log(np.asarray(impact.beam.depth / impact.beam.width))
+    shape = np.asarray(impact.beam.depth / impact.beam.width)
+    log = np.log(np.minimum(shape, DEPTHS[len(table) - 1]))  # tables of strips end at 1
     nu = np.asarray(impact.beam.material.poissons_ratio)
     return _at_ratio(nu, CubicSpline(np.log(DEPTHS[: len(table)]), table)(log))
 
@@ -242,18 +288,46 @@ def _of_beam(impact: Impact, force: Floats, moment: Floats) -> tuple[Floats, Flo
     return c, (g - shear) * beam.depth * beam.depth
 
 
-def _across_width(impact: Impact) -> tuple[Floats, Floats]:
-    """Return c_w (m/N) and gamma_w (m2) of bending across the width."""
+class Strip(NamedTuple):
+    """Constants of bending across the width: stiffness D_s (N m2), inertia (kg m3), lever (m2).
+
+    twist: T (N m4). stretch: l + nu T/(EI) (m2). decay: sqrt(e/T) (1/m) of a bend along the beam.
+    """
+
+    stiffness: Floats
+    inertia: Floats
+    lever: Floats
+    twist: Floats
+    stretch: Floats
+    decay: Floats
+
+
+def _strip(impact: Impact) -> Strip:
+    """Return the constants of the beam as a strip, of an impact or of many."""
     beam, nu = impact.beam, np.asarray(impact.beam.material.poissons_ratio)
-    t, e = 2.0 / 3.0 * (1.0 - nu), 4.0 * (1.0 - nu * nu)
-    moment = (t - nu / 3.0 - 4.0 * t / e) / e
-    force = (1.0 / 144.0 - moment * t) / (2.0 * np.sqrt(e * t))
-    square, per_plate = beam.width * beam.width, 0.25 * e * beam.width / beam.bending_stiffness
-    return square * per_plate * force, square * 0.25 * e * moment
+    square, along = beam.width * beam.width, beam.bending_stiffness
+    plate = beam.section.plate_stiffness(beam.material.youngs_modulus, nu)
+    stiffness = plate * _from_table(impact, STRIP_STIFFNESS)
+    usual = FREE_STRIP * beam.mass_per_length * square * square / 720.0
+    inertia = usual * _from_table(impact, STRIP_INERTIA)
+    lever = square / 24.0 * _from_table(impact, STRIP_LEVER)
+    twist = (1.0 - nu) * plate * square / 6.0 * _from_table(impact, STRIP_TWIST)
+    reduced = stiffness * along / (along + nu * nu * stiffness)
+    decay = np.sqrt(reduced / twist)
+    return Strip(stiffness, inertia, lever, twist, lever + nu * twist / along, decay)
 
 
-def width_inertia(impact: Impact) -> Floats:
-    """Return m of a strip (kg m3, solver/strip.py), of an impact or of many; zero for others."""
-    beam = impact.beam
-    mass = FREE_STRIP * beam.mass_per_length * beam.width**4 / 720.0
-    return np.where(np.equal(impact.contact_compliance, "strip"), mass, 0.0)
+def _across_width(impact: Impact) -> tuple[Floats, Floats]:
+    """Return c_w (m/N) and gamma_w (m2) of bending across the width, as on a strip."""
+    nu, strip = np.asarray(impact.beam.material.poissons_ratio), _strip(impact)
+    force = strip.stretch**2 / (2.0 * strip.decay * strip.twist)
+    return force, -nu * (strip.lever + strip.stretch)
+
+
+def bending_across(impact: Impact) -> Strip:
+    """Return the constants of a strip (solver/strip.py), of an impact or of many.
+
+    Zero for other beams.
+    """
+    strip = np.equal(impact.contact_compliance, "strip")
+    return Strip(*(np.where(strip, value, 0.0) for value in _strip(impact)))

@@ -4,7 +4,7 @@ Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
     the paper's beam  omega^2 <= 16 (EI)_q/(rho A dx^4) + k_c (1/(rho A dx) + 1/m_s)
                       (physics.md, in the place of the paper's bar-wave limit)
     Timoshenko beam   4 (EI)_q/(rho I dx^2) + k G A/(rho I) + 4 k G A/(rho A dx^2) as first term
-    strip             beside it (D B + 4 T/dx^2)/m + 4 nu^2 D B/(rho I dx^2), and the force's lever
+    strip             beside it (D_s + 4 T/dx^2)/m + 4 nu^2 D_s/(rho I dx^2), and the force's lever
                       on m in the contact's (strip.py): a sum of potentials has at most the sum of
                       their largest omega^2
     lumped            k_c/m_s, and (k_c + k)/m_b of the spring-mass model; a thousandth of it is
@@ -30,7 +30,6 @@ from impactlab.solver.jit import compiled
 from impactlab.solver.lumped import mid_span
 from impactlab.solver.responses import LARGEST_COMPLIANCE
 from impactlab.solver.section import FibreSection
-from impactlab.solver.strip import across_width
 from impactlab.solver.types import MODAL, SPRING_MASS, TIMOSHENKO, Record
 
 _GROWTH, _COARSE_GROWTH = 1.25, 2.0
@@ -131,10 +130,10 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
         omega_squared = (4.0 * EI / dx**2 + kGA) / inertia
         omega_squared += 4.0 * kGA / (mu * dx**2)
         if case.width_inertia > 0.0:
-            DB, twist, lever = across_width(case)
-            omega_squared += (DB + 4.0 * twist / dx**2) / case.width_inertia
-            omega_squared += 4.0 * case.beam_poissons_ratio**2 * DB / (inertia * dx**2)
-            contact += k_c * lever**2 / (case.width_inertia * dx)
+            D_s, twist = case.width_stiffness, case.width_twist
+            omega_squared += (D_s + 4.0 * twist / dx**2) / case.width_inertia
+            omega_squared += 4.0 * case.beam_poissons_ratio**2 * D_s / (inertia * dx**2)
+            contact += k_c * case.width_lever**2 / (case.width_inertia * dx)
     else:
         omega_squared = 16.0 * EI / (mu * dx**4)
     dt = 2.0 / math.sqrt(omega_squared + contact)

@@ -39,12 +39,12 @@ CASE = record(
     duration velocity gravity sphere_radius sphere_mass
     sphere_density sphere_youngs_modulus sphere_poissons_ratio sphere_yield_stress
     beam_span beam_width beam_depth shear_coefficient
-    mass_per_length rotary_inertia shear_stiffness plate_stiffness stress_per_moment
+    mass_per_length rotary_inertia shear_stiffness stress_per_moment
     beam_density beam_youngs_modulus beam_poissons_ratio beam_yield_stress
     beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus
     beam_rate_coefficient beam_rate_exponent courant
     compliance bending_compliance stress_along stress_across
-    width_inertia axis_compliance axis_bending
+    width_stiffness width_inertia width_lever width_twist axis_compliance axis_bending
     """,
     integers="contact beam_model load contact_prestress nodes points rule scheme",
 )
@@ -53,6 +53,6 @@ CASE = record(
 The fields are the parameters of model/parameters.py, in SI, with contact law, beam model, load,
 rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS, RULES and SCHEMES) and
 the sphere's mass resolved; the duration in s; and what follows from them: of the section
-(model/section.py) rho A, rho I, k G A, E B H^3/(12 (1 - nu^2)) of a strip and the stress in the
-outermost fibre over the bending moment, and of the contact those of model/contact_compliance.py.
+(model/section.py) rho A, rho I, k G A and the stress in the outermost fibre over the bending
+moment, and of contact and strip those of model/contact_compliance.py.
 """

@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 from scipy.special import j0
 
-from impactlab.model.contact_compliance import axis_compliance, contact_stress, width_inertia
+from impactlab.model.contact_compliance import axis_compliance, bending_across, contact_stress
 from impactlab.model.contact_compliance import contact_compliance as local
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
@@ -117,10 +117,10 @@ def _lift_by_pressure(impact: Impact, force: Floats) -> Floats:
 
 def _series(impact: Impact) -> ModalSolution:
     """Return the modal series of an impact with any contact compliance."""
-    inertia = float(width_inertia(impact))
+    across = [float(value) for value in bending_across(impact)[:4]]
     modes = (
-        beam_modes.strip_odd_modes(impact.beam, MODES, inertia)
-        if inertia > 0.0
+        beam_modes.strip_odd_modes(impact.beam, MODES, across)
+        if any(across)
         else beam_modes.timoshenko_odd_modes(impact.beam, MODES)
     )
     return solve_with(modes, impact, LONGER, None, *(float(value) for value in local(impact)))

@@ -20,6 +20,7 @@ A. R. Collar, Q. J. Mech. Appl. Math. 6 (1953) 186.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -130,33 +131,28 @@ def timoshenko_odd_modes(beam: Beam, count: int) -> BeamModes:
     return BeamModes(beam, wave_numbers, np.sqrt(squares), flexibilities, curvatures, statics)
 
 
-def strip_odd_modes(beam: Beam, count: int, inertia: float) -> BeamModes:
-    """Return the three spectra of the first `count` odd n of a strip; inertia: of s, in kg m3.
+def strip_odd_modes(beam: Beam, count: int, across: Sequence[float]) -> BeamModes:
+    """Return the three spectra of the first `count` odd n of a strip.
 
-    y_n (m) is that of the strip's middle; no mode's deflection is w alone. With s = S sin(q x)
-    beside W and Psi, n gives three oscillators: the Hessians of the energies of solver/strip.py are
-    their masses and springs. The load is 2 F/L on the middle W - S B^2/24. The shape of zero mean
-    is a quadrature's over the width, not a closed form's. Statics: 100 times as many n.
+    across: stiffness (N m2), inertia (kg m3), lever (m2) and twist (N m4) of s. y_n (m) is that of
+    the strip's middle; no mode's deflection is w alone. With s = S sin(q x) beside W and Psi, n
+    gives three oscillators: the Hessians of the energies of solver/strip.py are their masses and
+    springs. The load is 2 F/L on the middle W - lever S. Statics: 100 times as many n.
     """
-    steel, B = beam.material, beam.width
-    nu, a, mu = steel.poissons_ratio, shear_stiffness(beam), beam.mass_per_length
-    EI, D = beam.bending_stiffness, beam.bending_stiffness / (B * (1.0 - nu**2))
-    points, weights = np.polynomial.legendre.leggauss(5)
-    shape = (0.5 * B * points) ** 2
-    shape = 0.5 * (shape - 0.5 * weights @ shape)
-    middle = np.array([1.0, 0.0, shape[2]])
-    slopes = float(0.5 * B * weights @ (0.5 * B * points) ** 2)
+    nu, a, mu = beam.material.poissons_ratio, shear_stiffness(beam), beam.mass_per_length
+    EI, (stiffness, inertia, lever, twist) = beam.bending_stiffness, across
+    middle = np.array([1.0, 0.0, -lever])
 
     def springs(q: Floats) -> Floats:
         K = np.zeros((q.size, 3, 3))
-        K[:, 0, 0], K[:, 1, 1] = a * q**2, a + EI * q**2 + nu**2 * D * B * q**2
+        K[:, 0, 0], K[:, 1, 1] = a * q**2, a + EI * q**2 + nu**2 * stiffness * q**2
         K[:, 0, 1] = K[:, 1, 0] = -a * q
-        K[:, 1, 2] = K[:, 2, 1] = -nu * D * B * q
-        K[:, 2, 2] = D * B + 2.0 * (1.0 - nu) * D * slopes * q**2
+        K[:, 1, 2] = K[:, 2, 1] = -nu * stiffness * q
+        K[:, 2, 2] = stiffness + twist * q**2
         return K
 
     q = _odd_wave_numbers(beam, count)
-    roots = np.sqrt([mu, beam.section.rotary_inertia(steel.density), inertia])
+    roots = np.sqrt([mu, beam.section.rotary_inertia(beam.material.density), inertia])
     squares, vectors = np.linalg.eigh(springs(q) / np.outer(roots, roots))
     shapes = vectors / roots[:, None]
     y = np.einsum("i,nij->nj", middle, shapes)

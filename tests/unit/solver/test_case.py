@@ -11,16 +11,16 @@ from impactlab.solver.types import CASE
 OF_KERNELS = {
     name: entry for name, entry in PARAMETERS.items() if name not in (*SIZES, "contact_compliance")
 }
-"""Without those of the 3-D model alone, and that which becomes five numbers."""
+"""Without those of the 3-D model alone, and that which becomes eight numbers."""
 OF_SECTION = {
     "mass_per_length": lambda rho, E, nu, B, H, k: rho * B * H,
     "rotary_inertia": lambda rho, E, nu, B, H, k: rho * B * H**3 / 12,
     "shear_stiffness": lambda rho, E, nu, B, H, k: k * E / (2 + 2 * nu) * B * H,
-    "plate_stiffness": lambda rho, E, nu, B, H, k: B * E * H**3 / (12 * (1 - nu**2)),
     "stress_per_moment": lambda rho, E, nu, B, H, k: 6 / (B * H**2),
 }
 DERIVED = (
-    *("compliance", "bending_compliance", "width_inertia", "axis_compliance", "axis_bending"),
+    *("compliance", "bending_compliance", "axis_compliance", "axis_bending"),
+    *("width_stiffness", "width_inertia", "width_lever", "width_twist"),
     *("stress_along", "stress_across"),
 )
 

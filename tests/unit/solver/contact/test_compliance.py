@@ -7,12 +7,18 @@ import pytest
 from scipy.optimize import brentq
 
 import impactlab as il
-from impactlab.model.contact_compliance import contact_compliance, width_inertia
+from impactlab.model.contact_compliance import (
+    FREE_STRIP,
+    bending_across,
+    contact_compliance,
+)
 from impactlab.solver import outputs
 from impactlab.solver.contact import LAWS, kogut_etsion, prestress
 from impactlab.solver.contact.history import CONTACT, Pair, energies, force, load_to
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.verification.solutions.beam_modes import strip_odd_modes, timoshenko_odd_modes
+
+from ....benchmarks import section_modes
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
@@ -187,17 +193,32 @@ def test_a_strip_takes_over_what_it_does_in_statics():
     table = np.array(contact_compliance(replace(WIDE, contact_compliance="beam")))
     rest = np.array(contact_compliance(WIDE))
     beam = WIDE.beam
-    modes = strip_odd_modes(beam, 100, float(width_inertia(WIDE)))
+    modes = strip_odd_modes(beam, 100, [float(value) for value in bending_across(WIDE)[:4]])
     timoshenko = timoshenko_odd_modes(beam, 100)
     alone = timoshenko.residual_flexibility + timoshenko.flexibilities.sum()
     moment = 0.25 * beam.span / beam.bending_stiffness
     expected = (table - rest) @ [1.0, moment]
     assert modes.statics[0] - alone == pytest.approx(expected, rel=2e-3)
-    # a section swings as fast as a free strip of plate
-    beam, root = WIDE.beam, brentq(lambda x: np.cos(x) * np.cosh(x) - 1.0, 4.0, 5.0)
-    D = beam.bending_stiffness / (beam.width * (1.0 - 0.3**2))
-    plate = root**4 / beam.width**4 * D / (beam.material.density * beam.depth)
-    assert D * beam.width / width_inertia(WIDE) == pytest.approx(plate, rel=1e-6)
+
+
+def test_a_strip_is_that_of_the_modes_of_its_section():
+    """Between the rows and columns of the tables; and thin sections are plates with free edges."""
+    beam, nu = WIDE.beam, WIDE.beam.material.poissons_ratio
+    B, EI = beam.width, beam.bending_stiffness
+    plate = EI / (1.0 - nu**2)
+    units = [
+        *(plate, FREE_STRIP * beam.mass_per_length * B**4 / 720.0),
+        *(B**2 / 24.0, (1.0 - nu) * plate * B**2 / 6.0),
+    ]
+    expected = np.multiply(section_modes.strip(beam.depth / B, nu), units)
+    constants = bending_across(WIDE)[:4]
+    assert [float(value) for value in constants] == pytest.approx(expected, rel=5e-3)
+    root = brentq(lambda x: np.cos(x) * np.cosh(x) - 1.0, 4.0, 5.0)
+    stiffness, inertia, lever, _ = section_modes.strip(0.02, nu)
+    ratio = stiffness / inertia * 720.0 / (FREE_STRIP * root**4)
+    assert ratio == pytest.approx(1.0, abs=5e-3)
+    # the middle of a free bar in its first mode, 1.2157 times its root mean square
+    assert lever**2 / inertia * 720.0 / (576.0 * FREE_STRIP) == pytest.approx(1.2157**2, rel=5e-3)
 
 
 @pytest.mark.long  # it compiles a kernel that no other does

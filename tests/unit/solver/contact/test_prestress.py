@@ -10,7 +10,7 @@ from scipy.linalg import solve_banded
 from scipy.optimize import minimize_scalar
 
 import impactlab as il
-from impactlab.model.contact_compliance import AT, contact_stress
+from impactlab.model.contact_compliance import AT, bending_across, contact_stress
 from impactlab.solver.contact import LAWS, finite_element, prestress
 from impactlab.solver.contact.history import CONTACT, Pair, energies
 from impactlab.solver.contact.history import force as plain_force
@@ -122,20 +122,21 @@ def test_a_strip_has_its_static_stress_across_from_its_own_bending():
     base = replace(il.paper_impact(), beam_model="timoshenko", contact_prestress="bending")
     beam, nu = base.beam, base.beam.material.poissons_ratio
     H, B, EI = beam.depth, beam.width, beam.bending_stiffness
-    DB, n = EI / (1.0 - nu**2), 4000
-    T = (1.0 - nu) * DB * B * B / 6.0
+    strip = bending_across(replace(base, contact_compliance="strip"))
+    D_s, _, lever, T = (float(value) for value in strip[:4])
+    n = 4000
     x = np.linspace(0.0, 6.0 * B, n)  # from mid-span on, where the half force acts
     M, dx = 0.5 * (x[-1] - x), x[1]
-    # M = -EI kappa - nu DB (s + nu kappa): kappa = -(M + nu DB s)/(EI + nu^2 DB)
-    stiff = EI + nu**2 * DB
-    diagonal = -2.0 * T / dx**2 - DB * (1.0 - nu**2 * DB / stiff)
+    # M = -EI kappa - nu D_s (s + nu kappa): kappa = -(M + nu D_s s)/(EI + nu^2 D_s)
+    stiff = EI + nu**2 * D_s
+    diagonal = -2.0 * T / dx**2 - D_s * (1.0 - nu**2 * D_s / stiff)
     bands = np.array([np.full(n, T / dx**2), np.full(n, diagonal), np.full(n, T / dx**2)])
     bands[0, 1] *= 2.0  # symmetry
-    push = -nu * DB * M / stiff
-    push[0] += B * B / 24.0 / dx
+    push = -nu * D_s * M / stiff
+    push[0] += lever / dx
     s = solve_banded((1, 1), bands, push)
-    kappa = -(M[0] + nu * DB * s[0]) / stiff
-    own = 6.0 * DB / B / H**2 * (s[0] + nu * kappa) * (1.0 - 2.0 * AT)
+    kappa = -(M[0] + nu * D_s * s[0]) / stiff
+    own = 6.0 * D_s / B / H**2 * (s[0] + nu * kappa) * (1.0 - 2.0 * AT)
     beams, strips = (
         contact_stress(replace(base, contact_compliance=name))[1] for name in ("beam", "strip")
     )
