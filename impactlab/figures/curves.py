@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -22,6 +23,8 @@ from impactlab.types import Floats
 from impactlab.variables import of_function
 
 _JUMP, _FEW_STEPS = 5.0, 4
+_STEP, _TURNS = 0.1, 3  # least step of a zigzag over the range of the curve, and number of turns
+_SAME = 0.01  # largest difference, over the range and the values, that is too small to see
 _MOST = 6  # largest number of panels, and of curves if no other is asked for
 
 _MEASURED: dict[str, Any] = {
@@ -140,20 +143,43 @@ def look(curve: Selection, *, markers: bool = False) -> dict[str, Any]:
     }
 
 
-def add(ax: Axes, x: Floats, y: Floats, curve: Selection, *, markers: bool = True) -> bool:
-    """Draw a curve that has finite points; return whether it has."""
+def add(
+    ax: Axes, x: Floats, y: Floats, curve: Selection, *, markers: bool = True, covered: int = 0
+) -> bool:
+    """Draw a curve that has finite points; return whether it has.
+
+    covered: number of curves on top of it: its markers are rings around theirs.
+    """
     finite = bool(np.isfinite(x + y).any())
     if finite:
-        ax.plot(x, y, label=curve.label or "_only", **look(curve, markers=markers))
+        shape = look(curve, markers=markers)
+        if covered:
+            size = rcParams["lines.markersize"] + 2.6 * covered
+            shape |= {"markersize": size, "markerfacecolor": "none", "markeredgewidth": 0.8}
+        ax.plot(x, y, label=curve.label or "_only", **shape)
     return finite
+
+
+def coincide(y: Floats, other: Floats) -> bool:
+    """Return whether two curves lie on each other in half of their points or more."""
+    both = np.isfinite(y) & np.isfinite(other)
+    if not both.any():
+        return False
+    pair = np.array([y[both], other[both]])
+    visible = _SAME * np.minimum(np.ptp(pair), np.abs(pair).max(axis=0))
+    return bool(np.mean(np.abs(pair[0] - pair[1]) <= visible) >= 0.5)
 
 
 def broken(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     """Return a curve with a gap, of NaN, in each jump: a step of another size than those beside it.
 
     A step jumps if it is a tenth of the range or more, and _JUMP times as large and as steep as
-    both steps beside it.
+    both steps beside it. A curve that turns _TURNS times, each time by a tenth of the range or
+    more, is a zigzag and has gaps everywhere: its points tell nothing of what lies between them.
     """
+    if _is_zigzag(y):
+        gaps = np.arange(1, y.size)
+        return np.insert(x.astype(float), gaps, np.nan), np.insert(y.astype(float), gaps, np.nan)
     rise, run = np.abs(np.diff(y)), np.abs(np.diff(x))
     if rise.size < _FEW_STEPS or not np.isfinite(y).all() or not (run > 0).all():
         return x, y
@@ -165,6 +191,13 @@ def broken(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     jumps = (rise > 0.1 * np.ptp(y)) & (rise > _JUMP * beside[0]) & (slope > _JUMP * beside[1])
     gaps = np.flatnonzero(jumps) + 1
     return np.insert(x.astype(float), gaps, np.nan), np.insert(y.astype(float), gaps, np.nan)
+
+
+def _is_zigzag(y: Floats) -> bool:
+    finite = y[np.isfinite(y)]
+    steps = np.diff(finite)
+    large = steps[np.abs(steps) >= _STEP * np.ptp(finite)] if steps.size else steps
+    return int((large[1:] * large[:-1] < 0).sum()) >= _TURNS
 
 
 def chosen(runs: xr.Dataset, variable: str) -> Plan:

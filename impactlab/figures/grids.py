@@ -68,8 +68,12 @@ def _add_curves(
     """Draw the planned curves of a response over a parameter, and measurements; return its unit."""
     valid, across = usable(runs, name), display(along)
     unit, x = display(valid), across(along)
+    drawn: list[Floats] = []
     for curve in selected.curves:
-        curves.add(ax, *curves.broken(x, unit(valid.isel(curve.where))), curve)
+        y = unit(valid.isel(curve.where))
+        covered = sum(curves.coincide(y, other) for other in drawn)
+        curves.add(ax, *curves.broken(x, y), curve, covered=covered)
+        drawn.append(y)
     curves.add_measured(ax, analysis, name, str(along.name), across, unit)
     return unit
 
@@ -99,7 +103,10 @@ def contact_duration(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     _RESTITUTION,
     "Restitution against velocity",
     "Coefficient of restitution, the sphere's rebound velocity over its impact velocity, "
-    "against the impact velocity.",
+    "against the impact velocity. But for the weight, it is the impulse of all contacts over the "
+    "sphere's momentum, less one. That of the first contact changes smoothly; what later contacts "
+    "add depends on the phase of the vibrating beam that they meet, which neighbouring velocities "
+    "do not share. Such a zigzag is not joined.",
 )
 def restitution_velocity(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw with an axis that holds zero and one."""
@@ -215,8 +222,8 @@ def _plan_effects(runs: xr.Dataset) -> Plan:
     "",
     lambda runs, analysis: _along(runs) is not None and bool(responses(runs)),
     lambda runs, analysis: (
-        f"Responses against the {labels.parameter(runs[_along(runs)])}; where curves coincide, the "
-        "first in the legend lies on top. A jump is not joined.",
+        f"Responses against the {labels.parameter(runs[_along(runs)])}. Rings: curves that "
+        "coincide with those of the markers inside. Neither a jump nor a zigzag is joined.",
         _plan_effects(runs).note(runs),
         curves.note_measured(analysis, responses(runs), str(_along(runs))),
         access.missing_note(runs, responses(runs)),

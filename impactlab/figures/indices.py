@@ -82,7 +82,8 @@ def _bar_sentences(family: Family, analysis: xr.Dataset) -> list[str]:
     return [
         f"Estimators: {'; '.join(estimators)}." if estimators else "",
         "Parameters are sorted by the largest index in any panel.",
-        f"Lines on the bars: {access.confidence(analysis)} intervals.",
+        f"Lines on the bars: {access.confidence(analysis)} intervals"
+        f"{', cut off outside −0.25 to 1.25' if family.shares else ''}.",
         noise,
         "Pale, too: below what the numerical error could change." if numerical else "",
     ]
@@ -121,7 +122,10 @@ def bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
     ax.grid(visible=False, axis="y")
     ax.set_ylim(len(rows) - 0.5, -0.5)
     low, high = ax.get_xlim()
-    ax.set_xlim(min(low, 0.0), max(high, 1.0 if family.shares else 0.0))
+    if family.shares:
+        ax.set_xlim(max(min(low, 0.0), _ENDS[0]), min(max(high, 1.0), _ENDS[1]))
+    else:
+        ax.set_xlim(min(low, 0.0), max(high, 0.0))
     scales.linear(ax, "x")
 
 
@@ -195,25 +199,25 @@ def _pair_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, s
 
 @record.figure(
     "Sobol indices of second order",
-    "Share of the variance that two parameters bring together; columns are numbered as the rows.",
+    "Share of the variance that two parameters bring together, those of the row and the column.",
     lambda runs, analysis: bool(_significant_pairs(runs, analysis)),
     _pair_sentences,
 )
 def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response, a cell per pair, all on one colour scale."""
     significant, listed = _significant_pairs(runs, analysis), meanings(analysis)
-    figure, axes = responses_grid.panels(list(significant), 12 + 4.6 * len(listed), beneath=14)
+    figure, axes = responses_grid.panels(list(significant), 7 + 4.6 * len(listed), beneath=14)
     values = {name: pairs(analysis[_PAIRS].sel(response=name)) for name in significant}
     # no weaker than _WEAK, to keep noise pale
     tops = [np.max(values[n], initial=_WEAK, where=where) for n, where in significant.items()]
     colours = Normalize(0.0, max(map(float, tops)))
-    for position, (name, ax) in enumerate(axes.items()):
-        image = _map(ax, values[name], significant[name], colours)
+    for name, ax in axes.items():
+        image = _map(ax, values[name][:-1, 1:], significant[name][:-1, 1:], colours)
         responses_grid.warn(ax, access.verdict(analysis, _VERDICT, name))
-        _number(ax, listed, named=position % responses_grid.COLUMNS == 0)
+        _name_pairs(ax, listed)
     thin = 20 * min(len(axes), 2)
     bar = figure.colorbar(
-        image, ax=list(axes.values()), location="bottom", fraction=0.05, aspect=thin, shrink=0.6
+        image, ax=figure.axes, location="bottom", fraction=0.05, aspect=thin, shrink=0.6
     )
     bar.set_label("Share of the variance (–)")
     return figure
@@ -248,18 +252,28 @@ def _map(ax: Axes, values: Floats, significant: NDArray[np.bool_], colours: Norm
     for row, column in np.argwhere(np.isfinite(values) & significant):
         value = values[row, column]
         colour = "white" if colours(value) > 0.55 else "black"
-        text = f"{value:z.2f}".replace("0.", ".").replace("-", "−")
+        text = f"{value:z.2f}".replace("-", "−")
+        if len(values) > _ROOMY:
+            text = text.replace("0.", ".")
         ax.text(column, row, text, ha="center", va="center", fontsize=6, color=colour)
     return image
 
 
-def _number(ax: Axes, listed: list[str], *, named: bool) -> None:
-    """Write numbers along rows and columns, and the names of the parameters beside the rows."""
-    count = len(listed)
-    numbers = [str(number) for number in range(1, count + 1)]
-    rows = [f"{parameter} {number}" for parameter, number in zip(listed, numbers, strict=True)]
-    ax.set_yticks(range(count), rows if named else numbers)
-    ax.set_xticks(range(count), numbers)
+_ROOMY = 5  # largest number of columns that leave room for a zero before the point
+_SHORT = 4  # letters of names that have room under a column
+
+
+def _name_pairs(ax: Axes, listed: list[str]) -> None:
+    """Name rows and columns, or number long names; the label names the last, which has no row."""
+    rows, columns = listed[:-1], listed[1:]
+    if max(map(len, listed)) > _SHORT:
+        rows = [f"{name} ({number})" for number, name in enumerate(rows, 1)]
+        columns = [f"({number})" for number in range(2, len(listed) + 1)]
+        ax.set_xlabel(labels.wrapped_axis(listed[-1], str(len(listed))))
+    count = len(rows)
+    ax.set_yticks(range(count), rows)
+    ax.set_xticks(range(count), columns)
+    ax.tick_params(labelleft=style.starts_row(ax))
     ax.set(xlim=(-0.5, count - 0.5), ylim=(count - 0.5, -0.5), aspect="auto")
     ax.tick_params(length=0)
     ax.grid(visible=False)

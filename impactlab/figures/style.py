@@ -259,8 +259,9 @@ def legend(figure: Figure, title: str = "", order: Sequence[str] = ()) -> None:
         return
     entries = {label: entries[label] for label in order if label in entries} or entries
     entries |= guides
-    columns = _columns(figure.get_figwidth() / MILLIMETRE, list(entries))
-    rows = math.ceil(len(entries) / columns) + bool(title)
+    width = figure.get_figwidth() / MILLIMETRE
+    columns, title = _columns(width, list(entries)), textwrap.fill(title, int(width / 1.45))
+    rows = math.ceil(len(entries) / columns) + len(title.splitlines())
     grow(figure, rows * 4.2 + 1.0)
     handles: Any = [tuple(kinds.values()) for kinds in entries.values()]
     figure.legend(

@@ -175,6 +175,10 @@ class CurvePanel:
     curves: Sequence[Curve]
     log: bool = False
 
+    def __post_init__(self) -> None:
+        """Spell the names of study files as people write them."""
+        object.__setattr__(self, "title", spelled(self.title))
+
 
 @dataclass(frozen=True)
 class Finding:

@@ -85,7 +85,7 @@ SCALES = {
     "a scale model, 30 to 1": Scale(30.0**3, 30.0, 30.0),
     "moduli by 0.3, densities by 1.7": Scale(1.7, 1.0, math.sqrt(1.7 / 0.3)),
     "in t, mm and s": Scale(1e-3, 1e3, 1.0),
-    "in g, cm and us": Scale(1e3, 1e2, 1e6),
+    "in g, cm and µs": Scale(1e3, 1e2, 1e6),
 }
 
 

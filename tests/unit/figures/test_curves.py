@@ -6,7 +6,7 @@ import xarray as xr
 from drawings import is_guide, panel, points
 
 from impactlab.figures.catalogue import CATALOGUE
-from impactlab.figures.curves import broken, plan
+from impactlab.figures.curves import broken, coincide, plan
 from impactlab.figures.scales import spread
 from impactlab.solver.contact import CONTACT_LAWS
 
@@ -234,3 +234,29 @@ def test_the_flight_after_the_last_contact_sets_no_scale(velocity_study):
         runs[name][..., -1] = -1.0  # a metre away
     axes = panel(CATALOGUE["displacement_history"].plot(runs, NONE), "Hertz")
     assert axes.get_ylim()[0] > -500.0
+
+
+def test_a_zigzag_is_not_joined_and_a_wave_is():
+    x = np.arange(8.0)
+    zigzag = np.array([0.1, 9.0, 9.0, 0.1, 7.0, 0.1, 0.1, 0.1])
+    _, gapped = broken(x, zigzag)
+    assert np.isnan(gapped[1::2]).all()
+    np.testing.assert_array_equal(gapped[::2], zigzag)
+    x = np.linspace(0.0, 6.0, 40)
+    np.testing.assert_array_equal(broken(x, np.sin(x))[1], np.sin(x))
+
+
+def test_a_covered_curve_has_rings_around_the_markers_on_top(material_study):
+    runs, analysis = material_study
+    values = runs["peak_force"]
+    runs["peak_force"] = 0 * values + values.isel(beam_isotropic_hardening_modulus=0)
+    axes = panel(CATALOGUE["parameter_effects"].plot(runs, analysis), "Peak force (kN)")
+    first, *others = axes.lines
+    assert first.get_markerfacecolor() == first.get_color()
+    rings = [line for line in others if line.get_markerfacecolor() == "none"]
+    assert rings
+    assert all(line.get_markersize() > first.get_markersize() for line in rings)
+    # curves that are far apart, though not over the range of an outlier, are not covered
+    y = np.array([1.0, 2.0, 3.0, 1e4])
+    assert coincide(y, 1.001 * y)
+    assert not coincide(y, np.array([1.2, 2.2, 3.3, 1e4]))

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from drawings import assert_texts_are_fit_for_print
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from impactlab.figures import data, style
@@ -87,6 +88,7 @@ def test_nothing_overlaps_at_paper_width(kind, outcomes):
     )
     width = figure.get_figwidth() / style.MILLIMETRE
     assert min(abs(width - style.SINGLE), abs(width - style.DOUBLE)) < 1e-6
+    assert_texts_are_fit_for_print(figure)
     boxes = [axes.get_tightbbox() for axes in figure.axes]
     boxes += [legend.get_window_extent() for legend in figure.legends]
     for at, box in enumerate(boxes):

@@ -54,7 +54,7 @@ def test_pairs_are_shown_once_and_only_significant_ones_have_numbers(study):
         for name in ("second_order", "second_order_interval")
     )
     assert len(written) == int((abs(pairs(index)) > pairs(margin)).sum()) < 6
-    assert ".07" in written
+    assert "0.07" in written
     assert "−.01" not in written
     # without intervals no pair is significant
     figure = CATALOGUE["sobol_second_order"]

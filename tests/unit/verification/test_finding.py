@@ -13,6 +13,7 @@ from impactlab.verification.finding import (
     Comparison,
     Comparisons,
     Curve,
+    CurvePanel,
     Finding,
     Outcome,
     gravest_first,
@@ -136,4 +137,5 @@ def test_names_of_study_files_are_spelled_as_in_papers(name, text):
     comparison = Comparison(name, name, "1", 1.0, 1.0, 0.0, 1.0)
     assert comparison.quantity == comparison.where == text
     assert Curve(name, np.zeros(1), np.zeros(1)).label == text
+    assert CurvePanel(name, ("time", "s"), ("force", "N"), []).title == text
     assert spelled(text) == text, "a stored finding stays as it is"
