@@ -116,7 +116,7 @@ def calibrate(
 
     The distributions of the sample are the prior; a parameter that all measurements state is not
     inferred. The dataset is kept as calibration.nc in the study's folder, with the figure
-    calibration.svg.
+    calibration.svg and the report calibration.html.
 
     Parameters
     ----------

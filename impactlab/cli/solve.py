@@ -188,7 +188,8 @@ def calibrate(
     """Infer parameters and weights of contact laws from measurements.
 
     Solves the sample where it is not solved, calibrates its surrogate, and solves runs at the
-    posterior to confirm it. Writes calibration.nc and calibration.svg to results/NAME.
+    posterior to confirm it. Writes calibration.nc and its report, calibration.html, to
+    results/NAME.
     """
     stop_solving()
     from impactlab.report.calibration import draw_and_tell

@@ -177,3 +177,4 @@ def _solve(plan: RunPlan, folder: Path, workers: int, animate: Path | None) -> N
         log.error("%s%s; %s holds what was computed until then", option, stopped, folder)
         raise typer.Exit(1)
     print(f"{folder}: witness.nc, witness.vtu (for ParaView), beams.nc, comparison.csv, figures/")
+    print(folder / "report.html")

@@ -17,6 +17,7 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from impactlab.fem3d.figures.run import draw_witness
+from impactlab.fem3d.page import write_comparison
 from impactlab.fem3d.plan import MODELS, RunPlan
 from impactlab.fem3d.solver import solve_on
 from impactlab.fem3d.solver.march import Progress
@@ -42,8 +43,8 @@ def compare(
 ) -> tuple[xr.Dataset, xr.Dataset, Path]:
     """Solve a planned case by the 3-D FE model and the beam models; write and draw the answers.
 
-    folder: gets witness.nc, witness.vtu, beams.nc, comparison.csv and figures/. If the 3-D run
-    stopped before its end, and the folder holds a complete run, FOLDER_stopped gets them instead.
+    folder: gets witness.nc, witness.vtu, beams.nc, comparison.csv, figures/ and report.html. If the
+    3-D run stopped before its end, and the folder holds a complete run, FOLDER_stopped gets them.
     workers: number of threads. watched: is entered around the 3-D run, and gives its `progress`.
     frames: see solve_on.
 
@@ -76,6 +77,7 @@ def compare(
     responses = compared(solid, beams)
     write_csv(responses, folder / "comparison.csv")
     draw_witness(solid, beams, folder / "figures", plan.case.name)
+    write_comparison(responses, solid, plan, folder / "figures", folder / "report.html")
     return solid, responses, folder
 
 

@@ -70,12 +70,12 @@ def _predictions(ax: Axes, results: xr.Dataset) -> None:
     ):
         looks |= {"label": label, "color": colour, "marker": marker}
         ax.errorbar(centre, y, xerr=bar * scale, **looks)
-    ax.set_yticks(rows, _words(results), fontsize=6)
+    ax.set_yticks(rows, measured_words(results), fontsize=6)
     ax.set_ylim(rows.size - 0.5, -0.5)
-    ax.set(xlabel="from the measured value (standard uncertainties)", ylabel="measurement")
+    ax.set(xlabel="from the measured value\n(standard uncertainties)", ylabel="measurement")
 
 
-def _words(results: xr.Dataset) -> list[str]:
+def measured_words(results: xr.Dataset) -> list[str]:
     """Return the measurements in words, with the conditions in which they differ."""
     stated = [json.loads(text) for text in results["measured_conditions"].values.tolist()]
     keys = dict.fromkeys(key for conditions in stated for key in conditions)

@@ -5,23 +5,120 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 from pathlib import Path
+from shutil import copyfile
 
 import numpy as np
 import xarray as xr
 
 from impactlab.analysis.measurements import COVERAGE
 from impactlab.analysis.posterior import CONTRADICTED, FEWEST, NEGLIGIBLE, SILENT, STRONG
-from impactlab.figures import labels, measures
-from impactlab.figures.calibration import calibration
-from impactlab.figures.draw import save
+from impactlab.figures import labels, measures, record
+from impactlab.figures.calibration import calibration, measured_words
+from impactlab.figures.draw import draw
+from impactlab.report.listed import write_listed
+from impactlab.report.page import Cell, Entry, Row, Section, Table
 from impactlab.solver.contact import CONTACT_LAWS
+from impactlab.study import CALIBRATION
+
+_FIGURE = record.Figure(
+    "calibration",
+    "Parameters before and given the data, and predictions",
+    lambda *_: True,
+    lambda results, _: calibration(results),
+    lambda *_: (
+        "Grey: before the data, blue: given the data; predictions of the measured values with "
+        "intervals of 95 %, from the measured value."
+    ),
+)
+_LINES = 4  # of the answer on the page beside the headline; the others follow in a section
 
 
 def draw_and_tell(results: xr.Dataset, folder: Path) -> list[str]:
-    """Draw calibration.svg and .png into a folder; return the sentences."""
-    source = {"Title": "Calibration", "Source": f"study {results.attrs.get('study', '?')}"}
-    save(calibration(results), folder, "calibration", source)
+    """Draw calibration.svg and .png into a folder, write the report; return the sentences."""
+    figures = folder / CALIBRATION / "figures"
+    for path in draw([(_FIGURE, (results, results))], figures, str(results.attrs.get("study"))):
+        if path.suffix in (".svg", ".png"):
+            copyfile(path, folder / path.name)
+    write_calibration(results, figures, folder / "calibration.html")
     return sentences(results)
+
+
+def write_calibration(results: xr.Dataset, figures: Path, path: Path) -> None:
+    """Write the report of a calibration. Raises OSError where it cannot be written.
+
+    results: as of study.calibration.calibrate. figures: the folder of its figure.
+    """
+    headline, *rest = (text.removesuffix(".") for text in sentences(results))
+    attrs = {key: str(value) for key, value in results.attrs.items()}
+    file, title = attrs.get("study_file", "").replace("../", ""), attrs.get("title", "")
+    about = results.assign_attrs(title=f"Calibration: {title}", content="calibration")
+    command = f"impactlab calibrate {file or 'STUDY'} {attrs.get('measurements') or 'MEASUREMENTS'}"
+    contradicted = float(results["predictive_p"]) < CONTRADICTED
+    basis = Section("basis", "What it rests on", sentences=[f"{line}." for line in rest[_LINES:]])
+    write_listed(
+        path,
+        about,
+        figures,
+        headline=headline,
+        answers=[_entry(line) for line in rest[:_LINES]],
+        sections=[
+            Section("parameters", "Parameters", tables=[_parameters(results)]),
+            Section("predictions", "Predictions", tables=[_predictions(results)]),
+            *([basis] if basis.sentences else []),
+        ],
+        size=labels.counted(results.sizes["measurement"], "measurement"),
+        failed="contradicted by the data" if contradicted else "",
+        reproduce=[(command, "repeats the calibration")],
+        index=path.parent.with_name("index.html"),
+    )
+
+
+def _entry(line: str) -> Entry:
+    """Return the subject of a sentence, and what it says."""
+    silent = "The data cannot tell"
+    if line.startswith(silent):
+        return silent, line.removeprefix(f"{silent} ")
+    subject, _, text = line.partition(": ")
+    return subject, text
+
+
+def _parameters(results: xr.Dataset) -> Table:
+    """Return one row per parameter: mean, standard deviation and range, before and after."""
+    rows: list[Row] = []
+    for number, meaning in enumerate(measures.meanings(results)):
+        marginal = results.isel(parameter=number)
+        texts = [
+            f"{_value(marginal, f'{stage}_mean')} ± {_value(marginal, f'{stage}_deviation')}"
+            for stage in ("prior", "posterior")
+        ]
+        ends = " to ".join(_value(marginal, f"posterior_{end}") for end in ("low", "high"))
+        ratio = labels.number(float(marginal["spread_ratio"]), 2)
+        cells = [Cell(text, "number") for text in (*texts, ends, ratio)]
+        rows.append([labels.sentence(meaning), _unit(marginal).strip() or "–", *cells])
+    head = ["Parameter", "Unit", "Before the data", "Given the data", "95 %", "Ratio of spreads"]
+    return Table("Parameters: mean ± standard deviation", head, rows)
+
+
+def _predictions(results: xr.Dataset) -> Table:
+    """Return one row per measurement: measured, predicted, and whether they agree."""
+    rows: list[Row] = []
+    for number, text in enumerate(measured_words(results)):
+        row = results.isel(measurement=number)
+        name, units = (str(row[f"measured_{key}"].item()) for key in ("quantity", "units"))
+        unit = labels.display(
+            xr.DataArray(float(row["measured"]), name=name, attrs={"units": units})
+        )
+        cells = []
+        for mean, width in (
+            ("measured", "measured_uncertainty"),
+            ("predicted_mean", "predicted_deviation"),
+        ):
+            value, half = (float(unit(float(row[key]))) for key in (mean, width))
+            cells.append(Cell(f"{labels.number(value)} ± {labels.number(half, 2)}", "number"))
+        verdict = Cell("yes") if _inside(row)[1] else Cell("no", "warning")
+        rows.append([labels.sentence(text), unit.symbol or "–", *cells, verdict])
+    head = ["Quantity", "Unit", "Measured (k = 2)", "Predicted ± standard deviation", "Within 95 %"]
+    return Table("Measured values beside their predictions", head, rows)
 
 
 def sentences(results: xr.Dataset) -> list[str]:

@@ -308,5 +308,8 @@ def _write_page(
         pictures=figures,
         files="figures",
         sections=sections,
-        compared=f"impactlab compare {names} --output {output}",
+        reproduce=[
+            (f"impactlab compare {names} --output {output}", "compares these results again"),
+            ("make study", "reproduces all results, figures and reports"),
+        ],
     )

@@ -18,6 +18,7 @@ from impactlab.figures.record import CAPTIONS, listed
 from impactlab.files import check_source, checked, identity, opened, read_netcdf
 from impactlab.report import study, verification
 from impactlab.report.answer import answers
+from impactlab.report.listed import listed_reports
 from impactlab.report.page import described, leading, write_page
 
 
@@ -52,6 +53,9 @@ def stored_files(folder: Path) -> list[Path]:
             return [folder / name for name in kind.files]
     command = f"impactlab go studies/{folder.name}.yaml"
     raise FileNotFoundError(f"{folder}: holds no results: make them with `{command}`")
+
+
+_FILES = ("report", "thumbnail")  # keys of an entry of the index: files, seen from its page
 
 
 @contextmanager
@@ -109,9 +113,10 @@ def _entry(report: Path) -> dict[str, Any] | None:
 def write_index(results: Path, path: Path) -> None:
     """Write a page with each report under `results` (results/NAME/report.html): link and answer.
 
-    The studies of a comparison follow it in its order; all else is in the order of names. The page
-    on the paper (results/paper) is linked where it exists. A report without the stored results that
-    it was made from is left out. Raises OSError when `path` cannot be written.
+    The studies of a comparison follow it in its order; all else is in the order of names, reports
+    of calibrations and 3-D runs after that of their study. The page on the paper (results/paper) is
+    linked where it exists. A report without the stored results that it was made from is left out.
+    Raises OSError when `path` cannot be written.
     """
 
     def address(target: Path) -> str:
@@ -131,6 +136,9 @@ def write_index(results: Path, path: Path) -> None:
             picture = address(figures / f"{name}.svg")
             entry |= {"thumbnail": picture, "alt": captions[name]["title"]}
         entries.append(entry)
+    for folder, entry in listed_reports(results):
+        files = {key: address(folder / entry[key]) for key in _FILES if key in entry}
+        entries.append(entry | files)
     entries.sort(key=lambda entry: places.get(entry["study"], (entry["study"], 0)))
     claims = results / "paper" / "claims.html"
     paper = address(claims) if claims.exists() else ""

@@ -23,11 +23,13 @@ from impactlab.solver.contact import LAWS
 from impactlab.study import CALIBRATION, steps
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
+from impactlab.study.ownership import study_file
 from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
 from impactlab.study.schema.measurement_files import MeasurementSource, read_measurements
 from impactlab.study.schema.readers import of_impacts, study_of_content
 from impactlab.study.schema.yaml_file import read_mapping
 from impactlab.validation.errors import Problem, StudyError, unknown
+from impactlab.variables import provenance
 
 CONFIRMING = "confirming"
 """Folder in that of calibration, of the runs that confirm."""
@@ -92,6 +94,8 @@ def calibrate(
     names = posterior["parameter"].values.tolist()
     meanings = [str(first[name].attrs["long_name"]) for name in names]
     posterior = posterior.assign(parameter_long_name=("parameter", meanings))
+    source = "" if isinstance(measured, Mapping) else str(measured)
+    about |= {"study_file": study_file(study, folder), "measurements": source} | provenance()
     posterior = posterior.assign_attrs(about | {"model_error": model_error})
     write_netcdf(posterior, folder / "calibration.nc", "calibration")
     return posterior

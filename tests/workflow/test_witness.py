@@ -62,6 +62,12 @@ def test_the_papers_case_is_solved_compared_drawn_and_kept(impactlab, tmp_path):
     assert stress.ravel().tolist() == solid["von_mises_stress"].values.tolist()
     assert (folder / "figures" / "mesh.svg").exists()
     assert xr.load_dataset(folder / "beams.nc").sizes["beam_model"] == 3
+    report = " ".join((folder / "report.html").read_text().split())
+    assert "--contact stronge --element-size &#39;2 mm&#39;" in report
+    assert "the duration ends before the first contact does" in report
+    assert impactlab("index")[0] == 0
+    listed = (tmp_path / "results" / "index.html").read_text()
+    assert f'href="{folder.relative_to(tmp_path / "results").as_posix()}/report.html"' in listed
     assert (folder / "comparison.csv").read_text().startswith("response,units,model,value")
 
 

@@ -200,5 +200,5 @@ def draw_witness(solid: xr.Dataset, beams: xr.Dataset, folder: Path, study: str)
     solid: a dataset of fem3d.solver. beams: the answers of the beam models to the same impact, on
     `beam_model`.
     """
-    figures = (mesh, plastic_strain, histories)
+    figures = (histories, plastic_strain, mesh)
     return draw([(figure, (solid, beams)) for figure in figures], folder, study)

@@ -12,6 +12,7 @@ from impactlab.figures.calibration import calibration
 from impactlab.figures.data import drawn
 from impactlab.files import read_netcdf
 from impactlab.report.calibration import sentences
+from impactlab.report.results import write_index
 from impactlab.simulate import run_dataset
 from impactlab.study import calibration as of_study
 
@@ -48,7 +49,7 @@ def study(tmp_path):
     )
 
 
-def test_known_parameters_are_recovered_and_confirmed_by_runs(study, monkeypatch):
+def test_known_parameters_are_recovered_and_confirmed_by_runs(study, monkeypatch, tmp_path):
     found = il.calibrate(study, values(), workers=1)
     for name, truth in TRUTH.items():
         one = found.sel(parameter=name)
@@ -76,6 +77,13 @@ def test_known_parameters_are_recovered_and_confirmed_by_runs(study, monkeypatch
     assert rest.startswith("Confirmed by 48 runs")
     assert found.attrs["answer"].splitlines() == sentences(found)
     assert (study.folder / "calibration.svg").exists()
+    report = " ".join((study.folder / "calibration.html").read_text().split())
+    assert first.removesuffix(".") in report
+    assert "The data cannot tell:</strong> idle" in report
+    assert "Made from the study" in report
+    assert '<th scope="row">Value, time 0.5</th>' in report
+    write_index(tmp_path, tmp_path / "index.html")
+    assert f'href="{study.folder.name}/calibration.html"' in (tmp_path / "index.html").read_text()
     kept = read_netcdf(study.folder / "calibration.nc", "calibration")
     assert kept["posterior_mean"].equals(found["posterior_mean"])
     curves = [curve.curve for curve in drawn(calibration(kept))]
