@@ -30,7 +30,6 @@ from impactlab.files import check_suffix, replaced
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
-from impactlab.simulate import run_dataset
 from impactlab.types import Floats
 from impactlab.variables import FIELDS
 
@@ -221,6 +220,8 @@ def with_fields(run: xr.Dataset, frames: int) -> xr.Dataset:
     if not {"velocity", "nodes", "duration"} <= run.coords.keys():
         raise ValueError("animate: expected an impact, with its parameters as coordinates")
     values = {name: run[name].item() for name in PARAMETERS if name in run.coords}
+    from impactlab.simulate import run_dataset  # late: figures do without the compiler
+
     impact, grid = with_values(paper_impact(), Discretisation(), values)
     solved = run_dataset(impact, grid, duration=float(run["duration"]), frames=frames)
     if not np.isfinite(solved["deflection"]).all():

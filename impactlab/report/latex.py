@@ -108,8 +108,9 @@ def _numbers(values: Floats, *, pure: bool) -> list[str]:
     elif pure and largest >= _SHARE:
         texts = [f"{value:.3f}" for value in values]
     elif _PLAIN[0] <= least and largest < _PLAIN[1]:
-        rounded = [float(f"{value:.4g}") for value in values]
-        texts = [np.format_float_positional(value, trim="-") for value in rounded]
+        exact = all(float(f"{value:.4g}") == value for value in values[np.isfinite(values)])
+        texts = [f"{value:.4g}" if exact else f"{value:#.4g}".rstrip(".") for value in values]
+        texts = [f"{float(text):.0f}" if "e" in text else text for text in texts]
     else:
         texts = [f"{value:.3e}" for value in values]
     finite = np.isfinite(values).tolist()

@@ -90,9 +90,12 @@ def columns(data: xr.Dataset, responses: Sequence[str] = ()) -> Columns:
     data, responses: see `table`, and its errors.
     """
     if "comparison" in data.dims:
-        rows = {str(key): array for key, array in data.variables.items()}
-        names = [key for key, array in rows.items() if array.dims == ("comparison",)]
-        return {name: _labelled(data[name], labels.title(name)) for name in names}
+        names = [str(name) for name in (*data.coords, *data.data_vars)]
+        return {
+            name: _labelled(data[name], labels.title(name))
+            for name in names
+            if data[name].dims == ("comparison",)
+        }
     is_analysis = "response" in data.coords
     known = data["response"].values.tolist() if is_analysis else access.responses(data)
     for name in responses:
@@ -191,8 +194,9 @@ def export(
     paths = []
     for name, table in tables.items():
         path = folder / f"{name}{SUFFIXES[kind]}"
-        if kind == "latex" and (rows := xr.broadcast(*table.values())[0].size) > _PRINTED:
-            log.warning("%s: not written: %s rows are no table for print", path, f"{rows:,}")
+        rows = xr.broadcast(*table.values())[0].size
+        if kind == "latex" and (name == "comparisons" or rows > _PRINTED):
+            log.warning("%s: not written: the table is too long for print: take csv", path)
             continue
         with replaced(path) as unfinished:
             if kind == "latex":

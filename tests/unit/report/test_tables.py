@@ -8,11 +8,14 @@ import subprocess
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from samples import indices, sample
 
 import impactlab as il
-from impactlab.report import tables
+from impactlab.report import latex, tables
 from impactlab.report.tables import export, table
+from impactlab.verification.finding import Comparison, Finding, Outcome
+from impactlab.verification.outcomes import packed
 
 RUNS = sample(64, 3, failures=2).assign_attrs(title="Of 5 % & more_than_that")
 ANALYSIS = indices(RUNS)
@@ -83,6 +86,19 @@ def test_a_grid_has_a_row_per_combination_and_a_single_run_one():
     assert table(single)["peak_force (N)"].tolist() == [single["peak_force"].item()]
 
 
+def test_a_verification_has_a_row_per_comparison(tmp_path, caplog):
+    compared = Comparison("peak force", "at 1 m/s", "N", 21.5, 21.0, 0.02, 0.05)
+    outcomes = [Outcome("hertz", "Hertz", "a book", 0.1, Finding([compared, compared], []), "")]
+    findings = packed(outcomes).assign_attrs(study="checks", title="Checks", content="findings")
+    rows = table(findings)
+    assert rows.columns.tolist()[:5] == ["check", "quantity", "where", "units", "ours"]
+    assert rows.loc[1].tolist()[:5] == ["hertz", "peak force", "at 1 m/s", "N", 21.5]
+    names = [path.name for path in export(findings, None, tmp_path, "csv")]
+    assert names == ["comparisons.csv", "answers.csv"]
+    assert [path.name for path in export(findings, None, tmp_path, "latex")] == ["answers.tex"]
+    assert "comparisons.tex: not written" in caplog.text
+
+
 def test_names_and_kinds_that_do_not_exist(tmp_path, monkeypatch):
     with pytest.raises(ValueError, match=r"'peak_forc': unknown response; did you mean 'peak_fo"):
         table(RUNS, ["peak_forc"])
@@ -104,7 +120,7 @@ def test_what_is_too_long_for_a_sheet_or_a_page(tmp_path, monkeypatch, caplog):
     monkeypatch.setattr(tables, "_PRINTED", 63)
     paths = export(RUNS, ANALYSIS[["numerical_uncertainty"]], tmp_path, "latex")
     assert [path.name for path in paths] == ["answers.tex"]
-    assert "runs.tex: not written: 64 rows are no table for print" in caplog.text
+    assert "runs.tex: not written: the table is too long for print: take csv" in caplog.text
 
 
 def test_a_text_that_looks_like_a_formula_is_none(tmp_path):
@@ -153,6 +169,23 @@ def test_latex_has_heads_with_units_and_numbers_that_fit_their_columns(tmp_path)
     assert rows[0][:2] == ["Peak force", "impact velocity"]
     value = ANALYSIS["first_order"].sel(response="peak_force", parameter="velocity")
     assert rows[0][2] == f"{value.item():.3f}"
+
+
+@pytest.mark.parametrize(
+    ("values", "units", "cells", "shape"),
+    [
+        ([0.5, 2.0, 0.25], "m s-1", ["0.5", "2", "0.25"], "1.2"),
+        ([208.04e-6, 0.2e-3, 0.1e-3 / 3], "s", ["0.2080", "0.2000", "0.03333"], "1.5"),
+        ([61.3e3, 145.99e3, -2.763e3], "N", ["61.30", "146.0", "-2.763"], "-3.3"),
+        ([99999.6e3, 1.23456e3], "N", ["100000", "1.235"], "6.3"),
+        ([0.5774, -0.0005, np.nan], "1", ["0.577", "-0.001", "{--}"], "-1.3"),
+        ([3.0, 12.0, np.nan], "1", ["3", "12", "{--}"], "2.0"),
+        ([1.5e-7, 3e-8], "1", ["1.500e-07", "3.000e-08"], "1.3e-2"),
+    ],
+)
+def test_numbers_have_the_digits_and_units_of_print(values, units, cells, shape):
+    column = xr.DataArray(values, attrs={"units": units, "label": "Some value"}, name="some")
+    assert latex._column(column)[::2] == (cells, f"S[table-format={shape}]")
 
 
 @pytest.mark.skipif(shutil.which("pdflatex") is None, reason="needs the command pdflatex")
