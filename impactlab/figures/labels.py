@@ -199,6 +199,13 @@ def value(coordinate: xr.DataArray, position: int) -> str:
     return f"{text} {name}" if counted else text + unit(coordinate)
 
 
+def brief(coordinate: xr.DataArray, position: int) -> str:
+    """Return one value with its unit, as `value`, or the short name of a word."""
+    if coordinate.dtype.kind in "if":
+        return value(coordinate, position)
+    return values(coordinate, [position], short=True)[0]
+
+
 def setting(coordinate: xr.DataArray, where: Iterable[int]) -> str:
     """Return a parameter with some of its values: "impact velocity = 1, 5 and 20 m/s"."""
     texts = values(coordinate, where)

@@ -36,6 +36,8 @@ _MATTERS = 0.01
 """Smallest share of the largest index with which a parameter has a row."""
 _STEPS = 300  # most steps drawn of a cumulative curve
 _LINES = 3  # most curves per study
+_WIDER = 1.6
+"""Width by which the line of a study exceeds that of the next one, pt."""
 _FEWEST = 2  # smallest number of common values for an axis
 
 
@@ -150,7 +152,10 @@ def _figures(studies: Sequence[StudyResults]) -> list[_Panels]:
         title, plot = "Distributions side by side", partial(_distributions, studies)
         figures.append(_Panels("compared_distributions", title, text, plot, names))
     if not access.is_sample(runs) and (along := shared_axis(studies)):
-        text = f"Line styles tell further parameters apart; a jump is not joined. {colours}"
+        text = (
+            f"Line styles tell further parameters apart; a jump is not joined. {colours} Lines of "
+            "earlier studies are wider."
+        )
         title = f"Responses against the {labels.parameter(runs[along])}"
         plot = partial(_curves, studies, along)
         figures.append(_Panels("compared_responses", title, text, plot, names))
@@ -275,10 +280,12 @@ def _curves(studies: Sequence[StudyResults], along: str, names: Sequence[str]) -
             x = across(study.runs[along].values)
             order = np.argsort(x)
             for line, curve in enumerate(selected.curves):
-                label = ", ".join(filter(None, (study.label, curve.label)))
-                shown = curves.Selection(curve.where, label, (number, line))
+                settings = (labels.brief(study.runs[d], curve.where[d]) for d in selected.shown)
+                shown = curves.Selection({}, ", ".join([study.label, *settings]), (number, line))
                 y = unit(access.usable(study.runs, name).isel(curve.where).values)
-                curves.add(ax, *curves.broken(x[order], y[order]), shown)
+                if curves.add(ax, *curves.broken(x[order], y[order]), shown, markers=False):
+                    below = len(studies) - 1 - number  # wider, to be seen where curves coincide
+                    ax.lines[-1].set(linewidth=1.2 + _WIDER * below, zorder=3.0 - 0.1 * below)
             places.append(x)
         ax.set_title(labels.axis(labels.response(name), unit.symbol), loc="left")
         scales.fit(ax, "x", np.concatenate(places))

@@ -28,7 +28,7 @@ from impactlab.verification.outcomes import unpacked
 
 LINES = 5
 """Most lines of an answer, the headline among them."""
-_MINOR = (
+MINOR = (
     "time_of_peak_force",
     "number_of_contacts",
     "total_contact_time",
@@ -155,7 +155,7 @@ def _of_grid(
     if is_sample(runs):
         return effects.spread(runs, lead), effects.ranges(runs, [n for n in shown if n != lead]), ""
     if len(shown) > 2 * LINES and not of_function(runs):
-        shown = [name for name in shown if name not in _MINOR or name == lead]
+        shown = [name for name in shown if name not in MINOR or name == lead]
     if needs is not None:
         findings = [("Convergence", _convergence(needs, lead)[0])]
         runs = needs.runs.isel({axis: [0] for axis in needs.axes})

@@ -12,7 +12,8 @@ from impactlab.analysis.differences import differences
 from impactlab.figures import access, labels, measures
 from impactlab.figures.studies import StudyResults, common_display, shared_family, shared_responses
 from impactlab.methods.record import Family, Measure
-from impactlab.report.answer import packed
+from impactlab.report.answer import MINOR, packed
+from impactlab.report.effects import finite
 from impactlab.report.page import Entry
 from impactlab.report.ranking import share
 from impactlab.report.sensitivity import with_margin
@@ -28,8 +29,10 @@ _LINES = 4
 """Most lines of an answer, beside the headline."""
 _NEGLIGIBLE = 1e-3
 """Smallest numerical error of a share that is given."""
-_LONG = 20
-"""Most letters of a label without quotation marks."""
+_FEW = 10
+"""Most responses all of which a line names."""
+_ROUND_OFF = 1e-6
+"""Share of the largest magnitude up to which a value is zero, without a relative change."""
 _SAME = 1e-3
 """Largest relative change of a response of a grid that counts as none."""
 
@@ -106,11 +109,12 @@ def named(changes: Sequence[Change], family: Family) -> list[Change]:
 
 
 def ends(first: str, last: str) -> str:
-    """Return two labels as a span: "1 to 15 m/s"; a shared unit is given once."""
+    """Return two labels as a span: "1 to 15 m/s", a shared unit once; titles in quotation marks."""
     number, _, unit = first.partition(" ")
     if unit and last.endswith(f" {unit}") and number[:1].isdigit():
         return f"{number} to {last}"
-    return " to ".join(f"“{text}”" if len(text) > _LONG else text for text in (first, last))
+    are_titles = any(" " in text and not text[:1].isdigit() for text in (first, last))
+    return " to ".join(f"“{text}”" if are_titles else text for text in (first, last))
 
 
 def index_text(study: StudyResults, family: Family, response: str, parameter: str) -> str:
@@ -257,42 +261,65 @@ def levels(studies: Sequence[StudyResults], names: Sequence[str]) -> list[Entry]
 def response_sentence(studies: Sequence[StudyResults], response: str) -> str:
     """Return how a response of grids changes from the first to the last study, in a sentence."""
     span = ends(studies[0].label, studies[-1].label)
-    return f"From {span} the {labels.response(response)} {response_text(studies, response)}"
-
-
-def response_text(studies: Sequence[StudyResults], response: str) -> str:
-    """Return the change of a response of grids at the points that both ends have, or its ranges."""
-    first, last = (_finite(study, response) for study in (studies[0], studies[-1]))
-    unit = common_display(studies, response)
-    first, last = xr.align(first, last, join="inner")
-    ratio = (last - first) / abs(first)
-    ratio = ratio.where(np.isfinite(ratio))
-    symbol = f" {unit.symbol}" if unit.symbol else ""
+    head, unit = f"From {span} the {labels.response(response)}", common_display(studies, response)
+    ratio, *both = _ratio(studies, response)
     if not ratio.notnull().any():
-        spans = [
-            labels.span(unit(_known(_finite(s, response))), 3) for s in (studies[0], studies[-1])
-        ]
-        return f"goes from {spans[0]} to {spans[1]}{symbol}".replace("goes from", "has the range")
+        spans = [labels.span(unit(_known(values)), 3) for values in both]
+        return f"{head} goes from {spans[0]} to {spans[1]} {unit.symbol}".rstrip()
     low, high = float(ratio.min()), float(ratio.max())
+    place = {str(dim): int(number) for dim, number in abs(ratio).argmax(...).items()}
+    before, after = (labels.number(float(unit(part.isel(place))), 3) for part in both)
+    values = f"from {before} to {after} {unit.symbol}".rstrip()
+    where = [labels.brief(ratio[dim], number) for dim, number in place.items()]
+    if where:
+        values += f" at {', '.join(where)}"
     if max(-low, high) <= _SAME:
-        return f"changes by less than {labels.percent(_SAME)}"
-    where = abs(ratio).argmax(...)
-    at = {str(dim): int(place) for dim, place in where.items()}
-    before, after = (labels.number(float(unit(part.isel(at))), 3) for part in (first, last))
-    values = f"from {before} to {after}{symbol}"
-    if at:
-        place = ", ".join(labels.value(ratio[dim], number) for dim, number in at.items())
-        values += f" at {place}"
+        return f"{head} changes by less than {labels.percent(_SAME)}"
     if low < -_SAME and high > _SAME:
-        return f"changes by {labels.percent(low)} to +{labels.percent(high)}, most {values}"
+        return f"{head} changes by {_interval(low, high)}, most {values}"
     verb, size = ("rises", high) if high > _SAME else ("falls", -low)
-    return f"{verb} by up to {labels.percent(size)}, {values}" if at else f"{verb} {values}"
+    return f"{head} {verb} by {'up to ' if where else ''}{labels.percent(size)}, {values}"
 
 
-def _finite(study: StudyResults, response: str) -> xr.DataArray:
-    values = access.usable(study.runs, response)
-    extra = [name for name, coordinate in values.coords.items() if name not in values.dims]
-    return values.where(np.isfinite(values)).drop_vars(extra)
+def response_entries(studies: Sequence[StudyResults], names: Sequence[str]) -> list[Entry]:
+    """Return entries on the relative changes of responses of grids, and on those that stay."""
+    changed, same = [], []
+    for name in names:
+        ratio = _ratio(studies, name)[0]
+        if not ratio.notnull().any():
+            continue
+        low, high = float(ratio.min()), float(ratio.max())
+        response = labels.response(name)
+        if max(-low, high) <= _SAME:
+            same.append(response)
+        else:
+            changed.append(f"{response} {_interval(low, high)}")
+    entries = [("Changes of other responses", ", ".join(changed))] if changed else []
+    none = f"Change by less than {labels.percent(_SAME)}"
+    return [*entries, (none, labels.listing(same))] if same else entries
+
+
+def _ratio(
+    studies: Sequence[StudyResults], response: str
+) -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
+    """Return relative changes from the first to the last study, and both, where they have points.
+
+    Without common points there are no changes, and both have all of theirs.
+    """
+    both = [finite(study.runs, response) for study in (studies[0], studies[-1])]
+    both = [v.drop_vars([name for name in v.coords if name not in v.dims]) for v in both]
+    first, last = xr.align(*both, join="inner")
+    least = _ROUND_OFF * float(max(abs(values).max() for values in both))
+    change = (last - first) / abs(first).where(abs(first) > least)
+    if change.notnull().any():
+        return change, first, last
+    return change, both[0], both[1]
+
+
+def _interval(low: float, high: float) -> str:
+    """Return two relative changes in per cent: "−2.4 to +12 %"."""
+    texts = [f"{'+' if end > 0 else ''}{labels.number(100 * end, 2)}" for end in (low, high)]
+    return f"{' to '.join(dict.fromkeys(texts))} %"
 
 
 def _known(values: xr.DataArray) -> Floats:
@@ -324,7 +351,9 @@ def findings(studies: Sequence[StudyResults]) -> Findings:
     names, family = shared_responses(studies), shared_family(studies)
     if not access.is_sample(studies[0].runs):
         lead = access.leading(studies[0].runs, names)
-        entries = [(labels.title(n), response_text(studies, n)) for n in names if n != lead]
+        minor = (*MINOR, "energy_error") if len(names) > _FEW else ()
+        others = [name for name in names if name != lead and name not in minor]
+        entries = response_entries(studies, others)
         return Findings(lead, response_sentence(studies, lead), packed(entries, _LINES), {})
     found = compared(studies, family) if family else {}
     last = [[entry] for entry in (*levels(studies, names), *unusable(studies))]

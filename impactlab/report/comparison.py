@@ -70,10 +70,11 @@ def compare_results(folders: Sequence[Path], output: Path | None = None) -> xr.D
         for name, (kind, _) in zip(names, opened, strict=True):
             if kind is not RUNS:
                 raise ValueError(f"{name}: is a verification, without runs: take it out")
-        texts = tell_apart(names, [datasets[0] for _, datasets in opened])
+        solved = on_common_dimensions([datasets[0] for _, datasets in opened])
+        texts = tell_apart(names, solved)
         studies = [
-            StudyResults(name, label, *datasets)
-            for name, label, (_, datasets) in zip(names, texts, opened, strict=True)
+            StudyResults(name, label, runs, datasets[1])
+            for name, label, runs, (_, datasets) in zip(names, texts, solved, opened, strict=True)
         ]
         _check(studies)
         found = changes.findings(studies)
@@ -90,6 +91,24 @@ def compare_results(folders: Sequence[Path], output: Path | None = None) -> xr.D
         draw_studies(studies, found.lead, comparison, output / "figures")
         _write_page(studies, comparison, found, folders, output)
     return comparison
+
+
+def on_common_dimensions(runs: Sequence[xr.Dataset]) -> list[xr.Dataset]:
+    """Return grids whose dimensions are the parameters that any of them varies; samples as are.
+
+    A parameter that has a single value in all of them is held, one that only others vary is a
+    dimension with its one value.
+    """
+    if any(map(access.is_sample, runs)):
+        return list(runs)
+    sizes = [(dim, grid.sizes[dim]) for grid in runs for dim in access.design_dims(grid)]
+    varied = {dim for dim, size in sizes if size > 1}
+    common = []
+    for grid in runs:
+        held = grid.squeeze([dim for dim in access.design_dims(grid) if dim not in varied])
+        missing = [n for n in varied if n in held.coords and n not in held.dims]
+        common.append(held.expand_dims(missing))
+    return common
 
 
 def _check(studies: Sequence[StudyResults]) -> None:
@@ -117,7 +136,7 @@ def differing(runs: Sequence[xr.Dataset]) -> list[str]:
 def tell_apart(names: Sequence[str], runs: Sequence[xr.Dataset]) -> list[str]:
     """Return a label per study: what differs of the impact, "5 m/s", or else its title or name."""
     varied = [name for name in differing(runs) if PARAMETERS[name].path[0] == "impact"]
-    by_value = [", ".join(labels.value(r[name], 0) for name in varied) for r in runs]
+    by_value = [", ".join(labels.brief(r[name], 0) for name in varied) for r in runs]
     titles = [str(r.attrs.get("title", "")) for r in runs]
     choices = ([by_value] if len(varied) in (1, 2) else []) + [titles]
     whole = (texts for texts in choices if all(texts) and len(set(texts)) == len(texts))
@@ -128,7 +147,7 @@ def _subject(studies: Sequence[StudyResults]) -> str:
     """Return what the studies differ in: "impact velocity 1 m/s, 5 m/s and 15 m/s"."""
     runs = [study.runs for study in studies]
     names, texts = differing(runs), [study.label for study in studies]
-    if not names or not texts[0].startswith(labels.value(runs[0][names[0]], 0)):
+    if not names or not texts[0].startswith(labels.brief(runs[0][names[0]], 0)):
         return labels.listing(texts)
     unit = labels.unit(runs[0][names[0]])
     if all(text.endswith(unit) for text in texts):
@@ -161,8 +180,9 @@ def _differences(studies: Sequence[StudyResults]) -> Table:
             rows.append([labels.sentence(_meaning(key)), *values, Cell(key, "muted")])
             stated.add(key)
     for name in differing([study.runs for study in studies]):
-        if (key := ".".join(PARAMETERS[name].path)) not in stated:
-            texts = [labels.value(study.runs[name], 0) for study in studies]
+        key = ".".join(PARAMETERS[name].path)
+        if not stated & {key, f"sampling.parameters.{name}"}:
+            texts = [labels.brief(study.runs[name], 0) for study in studies]
             meaning = labels.sentence(labels.parameter(studies[0].runs[name]))
             rows.append([meaning, *texts, Cell(f"{key} (as solved)", "muted")])
     head = ["Difference", *(study.label for study in studies), "Key"]

@@ -44,7 +44,7 @@ _UNCLEAR = "varies"
 
 def headline(runs: xr.Dataset, response: str) -> str:
     """Return what the parameters of a grid do to one response, in a sentence."""
-    values, name = _finite(runs, response), labels.response(response)
+    values, name = finite(runs, response), labels.response(response)
     if not np.isfinite(values).any():
         return f"The {name} is missing in every run"
     factors = _factors(values)
@@ -78,7 +78,7 @@ def headline(runs: xr.Dataset, response: str) -> str:
 
 def spread(runs: xr.Dataset, response: str) -> str:
     """Return the range of one response of a sample, in a sentence."""
-    values, name = _finite(runs, response), labels.response(response)
+    values, name = finite(runs, response), labels.response(response)
     if not np.isfinite(values).any():
         return f"The {name} is missing in every run"
     return f"The {name} takes values from {_range(runs, values)}"
@@ -89,8 +89,8 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset, lead: str, shown: list[str])
 
     lead: the response of the headline. shown: all responses that the answer covers.
     """
-    factors = _factors(_finite(runs, lead)) if np.isfinite(_finite(runs, lead)).any() else []
-    main = _main(runs, _finite(runs, lead), factors) if factors else ""
+    factors = _factors(finite(runs, lead)) if np.isfinite(finite(runs, lead)).any() else []
+    main = _main(runs, finite(runs, lead), factors) if factors else ""
     others = [name for name in shown if name != lead]
     lines = _trends(runs, others, main) if main in physical(runs) else ranges(runs, others)
     dims = [dim for dim in design_dims(runs) if runs.sizes[dim] > 1 and dim != main]
@@ -105,7 +105,7 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset, lead: str, shown: list[str])
     return [*lines, ("Doubtful", ", ".join(doubts))] if doubts else lines
 
 
-def _finite(runs: xr.Dataset, name: str) -> xr.DataArray:
+def finite(runs: xr.Dataset, name: str) -> xr.DataArray:
     """Return a response without infinite values, and with zero for round-off."""
     values = usable(runs, name)
     finite = values.where(np.isfinite(values))
@@ -217,7 +217,7 @@ def _trends(runs: xr.Dataset, names: list[str], main: str) -> list[Entry]:
     """Return one entry per trend along a parameter: the responses that have it, with ranges."""
     groups: dict[str, list[str]] = defaultdict(list)
     for name in names:
-        values = _finite(runs, name)
+        values = finite(runs, name)
         trends = set()
         if main in values.dims and np.isfinite(values).any():
             others = [str(dim) for dim in values.dims if dim != main]
@@ -233,7 +233,7 @@ def _trends(runs: xr.Dataset, names: list[str], main: str) -> list[Entry]:
 
 def ranges(runs: xr.Dataset, names: list[str]) -> list[Entry]:
     """Return one entry on the ranges of responses."""
-    texts = [f"{labels.response(name)} {_range(runs, _finite(runs, name))}" for name in names]
+    texts = [f"{labels.response(name)} {_range(runs, finite(runs, name))}" for name in names]
     return [("Ranges", _listed(texts))] if texts else []
 
 
@@ -248,7 +248,7 @@ def _factor(runs: xr.Dataset, dim: str, lead: str, shown: list[str]) -> Entry:
     changes = {
         name: _change(values, dim)
         for name in shown
-        if dim in (values := _finite(runs, name)).dims and np.isfinite(values).any()
+        if dim in (values := finite(runs, name)).dims and np.isfinite(values).any()
     }
     none = f"below {labels.percent(_NONE)}"
     names = [name for name in changes if changes[name] > _NONE]
@@ -275,7 +275,7 @@ def _comparison(runs: xr.Dataset, dim: str) -> str:
 
 def _contrast(runs: xr.Dataset, name: str, dim: str) -> str:
     """Return the change of a response from the first to the last value of a parameter."""
-    values, is_number = _finite(runs, name), runs[dim].dtype.kind in "if"
+    values, is_number = finite(runs, name), runs[dim].dtype.kind in "if"
     if not is_number and values.sizes[dim] > 2:
         return _by_word(runs, values, dim)
     ordered = values.sortby(dim) if is_number else values

@@ -57,9 +57,9 @@ def results(tmp_path_factory):
 def test_samples_are_compared_from_the_command_line(results):
     told = done("compare", *NAMES, "--output", "results/thirds", cwd=results.parent).stdout
     headline, *lines = told.splitlines()
-    assert headline.startswith("results/thirds/report.html: From To 3.14 to To 3 the share of x"), (
-        told
-    )
+    assert headline.startswith(
+        "results/thirds/report.html: From “To 3.14” to “To 3” the share of x"
+    ), told
     assert len(lines) <= 4
     page = (results / "thirds" / "report.html").read_text()
     for words in (
@@ -98,11 +98,18 @@ def test_grids_are_compared_on_common_axes(results):
     headline = il.answers(comparison)[0]
     assert headline.startswith("From Hertz to ")
     assert "the peak force falls by up to " in headline
+    assert headline.endswith(" at 4 m/s.")
     folder = results / "compare-hertz-stronge"
     page = (folder / "report.html").read_text()
     assert "impact.contact" in page
     table = (folder / "figures" / "compared_responses.csv").read_text()
     assert table.count("Hertz") >= 6
+    # of a study of both laws, the runs with the other's law alone
+    both = {"contact": ["hertz", "stronge"], "velocity": [1, 2, 4]}
+    keys = {"title": "both laws", "impact": {"base": "paper"}}
+    of_velocity(results, "both", **keys, sampling=il.Grid(parameters=both))
+    comparison = compare_results([results / "both", results / "hertz"])
+    assert il.answers(comparison)[0].endswith("the peak force changes by less than 0.1 %.")
 
 
 def test_methods_other_than_sobol_are_compared_by_their_half_widths(results, tmp_path):
