@@ -253,7 +253,7 @@ def verify(
 def go(
     study: StudyFile, workers: Threads = _ALL, force: Force = False, replace: Replace = False
 ) -> None:
-    """Do everything for one study: run, analyse, figures, report and index.
+    """Run, analyse, draw, report and index one study.
 
     For a verification: verify, figures, report and index. Solved runs are not solved again.
     """
