@@ -49,6 +49,7 @@ def recommend(
     """
     from impactlab.report.console import print_recommendation
     from impactlab.study import RESOLUTION, steps
+    from impactlab.study.adaptive.recommendation import recommended_grid
     from impactlab.study.engine import Engine
     from impactlab.study.ownership import check_unclaimed
     from impactlab.study.schema.declarations import Auto
@@ -66,7 +67,12 @@ def recommend(
         wishes = wishes.model_copy(update={"tolerance": limit})
     if names := chosen("--responses", responses, declared.responses):
         wishes = wishes.model_copy(update={"responses": names})
-    print_recommendation(steps.recommend(declared, path, Engine("threads", workers), wishes))
+    evidence = steps.recommend(declared, path, Engine("threads", workers), wishes)
+    print_recommendation(evidence)
+    if grid := recommended_grid(evidence, declared.discretisation):
+        names = ("nodes", "points", "rule", "scheme", "courant")
+        keys = ", ".join(f"{name}: {getattr(grid, name)}" for name in names)
+        print(f"To paste into {study}:\n\ndiscretisation: {{{keys}}}")
 
 
 def design(

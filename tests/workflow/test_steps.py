@@ -15,6 +15,7 @@ from impactlab.report.answer import answers
 from impactlab.study import steps
 from impactlab.study.adaptive import extension, recommendation
 from impactlab.study.engine import Engine
+from impactlab.study.schema.readers import read_study
 from impactlab.study.store import holder
 
 GROWING = """
@@ -59,6 +60,14 @@ def test_one_command_takes_the_evidence_that_the_workflow_takes(folder):
     impactlab("go", "studies/sample.yaml", cwd=folder)
     analysis = xr.load_dataset(folder / "results" / "sample" / "analysis.nc")
     assert {"first_order_numerical", "numerical_uncertainty"} <= set(analysis)
+    # what `recommend` prints to paste is what the study was solved with
+    *_, line = impactlab("recommend", "studies/sample.yaml", cwd=folder).stdout.splitlines()
+    pasted = SAMPLE.replace("discretisation: {nodes: 21, points: 3}", line)
+    (folder / "studies" / "pasted.yaml").write_text(pasted)
+    grid = read_study(folder / "studies" / "pasted.yaml").discretisation
+    runs = xr.load_dataset(folder / "results" / "sample" / "runs.nc")
+    for name in ("nodes", "points", "rule", "scheme", "courant"):
+        assert getattr(grid, name) == runs[name].item(), name
 
 
 def test_one_command_reports_a_verification_before_it_fails(folder, monkeypatch):
