@@ -16,6 +16,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Column, Table
 
+from impactlab.fem3d.figures.motion import animation
 from impactlab.fem3d.figures.run import draw_witness
 from impactlab.fem3d.page import write_comparison
 from impactlab.fem3d.plan import MODELS, RunPlan
@@ -23,6 +24,7 @@ from impactlab.fem3d.solver import solve_on
 from impactlab.fem3d.solver.march import Progress
 from impactlab.fem3d.wing import SOLID, UNLIKE
 from impactlab.figures import labels
+from impactlab.figures.animation import FILE
 from impactlab.figures.labels import display
 from impactlab.files import opened, replaced, write_netcdf
 from impactlab.model.discretisation import Discretisation
@@ -46,7 +48,7 @@ def compare(
     folder: gets witness.nc, witness.vtu, beams.nc, comparison.csv, figures/ and report.html. If the
     3-D run stopped before its end, and the folder holds a complete run, FOLDER_stopped gets them.
     workers: number of threads. watched: is entered around the 3-D run, and gives its `progress`.
-    frames: see solve_on.
+    frames: whether to animate the section through the contact, too.
 
     Returns the answers of the 3-D FE model, the responses of all models (see compared), and the
     folder where the files lie. Answers are on disk before anything is made of them. Raises OSError
@@ -77,6 +79,9 @@ def compare(
     responses = compared(solid, beams)
     write_csv(responses, folder / "comparison.csv")
     draw_witness(solid, beams, folder / "figures", plan.case.name)
+    (folder / "figures" / FILE).unlink(missing_ok=True)
+    if frames:
+        animation(solid).save(folder / "figures" / FILE)
     write_comparison(responses, solid, plan, folder / "figures", folder / "report.html")
     return solid, responses, folder
 

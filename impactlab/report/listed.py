@@ -13,7 +13,7 @@ import xarray as xr
 
 from impactlab.figures.record import CAPTIONS
 from impactlab.files import replaced
-from impactlab.report.page import Entry, Section, described, pictures, write_page
+from impactlab.report.page import Entry, Section, described, motion, pictures, write_page
 
 _SUFFIX = ".index.json"
 _KEYS = {"title", "study", "answer", "description", "size", "report"}
@@ -66,6 +66,7 @@ def write_listed(
         ],
         reproduce=reproduce,
         index=os.path.relpath(index, path.parent),
+        animation=motion(figures_folder),
     )
     keys = ("title", "study", "description")
     entry = {key: about[key] for key in keys} | {"answer": f"{headline}.", "size": size}

@@ -20,6 +20,7 @@ import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from impactlab.figures import labels
+from impactlab.figures.animation import FILE
 from impactlab.figures.catalogue import LEAD
 from impactlab.figures.needs import REFINED
 from impactlab.figures.record import listed
@@ -211,6 +212,12 @@ def pictures(
             "data": drawn_data(numbers) if numbers.exists() else None,
         }
     return figures
+
+
+def motion(folder: Path) -> str:
+    """Return the page of the animation among the figures, "" where there is none."""
+    page = folder / FILE
+    return page.read_text("utf-8") if page.exists() else ""
 
 
 def leading(names: Iterable[str]) -> str:

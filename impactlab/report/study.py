@@ -12,7 +12,6 @@ import xarray as xr
 
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, design_dims, is_sample, names, responses, usable, varied
-from impactlab.figures.animation import FILE
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
 from impactlab.figures.samples import scatter
@@ -24,7 +23,7 @@ from impactlab.report.answer import entries
 from impactlab.report.cautions import beside, cautions, endings, notes
 from impactlab.report.convergence import convergence
 from impactlab.report.explorer import write_explorer
-from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
+from impactlab.report.page import Cell, Row, Section, Table, described, motion, pictures, write_page
 from impactlab.report.regimes import regime_entries
 
 _GRID_VALUES = 12  # a longer list of values of a grid is replaced by its range
@@ -66,7 +65,6 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         title = "Notes on the model"
         sections.append(Section("notes", title, sentences=remarks, closed=True))
     size, ending = counts(runs)
-    moving = figures_folder / FILE
     write_page(
         "report.html.j2",
         path,
@@ -86,7 +84,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         files=os.path.relpath(figures_folder, path.parent),
         sections=sections,
         explorer=write_explorer(runs, analysis, path),
-        animation=moving.read_text("utf-8") if moving.exists() else "",
+        animation=motion(figures_folder),
     )
 
 

@@ -77,6 +77,7 @@ def test_a_study_gives_the_case_and_options_change_it(impactlab, tmp_path, undra
     assert code == 0, said
     with Image.open("contact.gif") as moving:
         assert moving.n_frames > 10
+    assert "<iframe" in (tmp_path / "here" / "report.html").read_text("utf-8")
     held = "some.yaml varies parameters of which this command takes one value: contact = stronge"
     assert held in said
     beams = xr.load_dataset(tmp_path / "here" / "beams.nc")
