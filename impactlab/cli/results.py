@@ -123,7 +123,7 @@ def _panels(width: str, style: str) -> Callable[..., list[Path]]:
     return partial(draw_panels, width=millimetres, look=style)
 
 
-_NARROWEST = 60.0
+_NARROWEST = 80.0
 """Least width of a panel that has room for its labels at 8 pt, mm."""
 
 

@@ -12,7 +12,7 @@ from impactlab.figures import access, labels, style
 from impactlab.figures.access import usable
 from impactlab.figures.labels import display
 
-COLUMNS = 3
+_COLUMNS, _SQUARE = 3, 4  # columns of panels, but for the number of panels that makes a square
 _ALONE = 50.0
 """Least height of a panel that stands alone, mm."""
 
@@ -26,7 +26,8 @@ def panels(
     """
     height = max(height, _ALONE) if len(names) == 1 else height
     titles = [labels.title(name) for name in names]
-    figure, axes = style.titled_panels(titles, columns=COLUMNS, height=height)
+    columns = 2 if len(names) == _SQUARE else _COLUMNS
+    figure, axes = style.titled_panels(titles, columns=columns, height=height)
     style.grow(figure, beneath)
     return figure, dict(zip(names, axes, strict=True))
 

@@ -34,6 +34,7 @@ _POINTS: dict[str, Any] = {
 }
 _NAMES = 14.0  # height of the names of words under a panel, mm
 _BINS, _FEWEST = 20, 30  # largest number of bins of the mean, and smallest number of runs in a bin
+_PERFECT = 0.9999  # Q² beyond which rounding would say 1
 _MOST = 400  # largest number of points in a panel of surrogates; more hide each other
 _DRAWN = {"good": 2000, "failed": 1000}  # largest numbers of runs in the map
 _LOOKS: dict[str, dict[str, Any]] = {
@@ -195,7 +196,8 @@ def surrogate_validation(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         if not ax.lines:
             responses_grid.empty(ax, f"no surrogate:\n{verdict.words if verdict else 'unknown'}")
             continue
-        text = f"Q² = {labels.number(float(analysis['surrogate_q2'].sel(response=name)))}"
+        q2 = float(analysis["surrogate_q2"].sel(response=name))
+        text = "Q² > 0.9999" if q2 > _PERFECT else f"Q² = {labels.number(q2)}"
         warning = verdict is not None and not verdict.sound
         if verdict and warning:
             text += f"\n{verdict.words}"

@@ -63,7 +63,7 @@ def test_a_panel_alone_keeps_the_axes_that_it_shares(velocity_study):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["--width", "30 mm"], ["--width", "60 to 183 mm"]),
+        (["--width", "30 mm"], ["--width", "80 to 183 mm"]),
         (["--width", "3 s"], ["--width", "3 s"]),
         (["--style", "natur"], ["--style", "nature"]),
     ],

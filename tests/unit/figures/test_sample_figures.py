@@ -174,7 +174,7 @@ def test_alternative_texts_tell_what_is_largest(study):
     bars = alt(CATALOGUE["sobol_indices"].plot(*study))
     assert bars.startswith("Peak force: first order: largest for impact velocity (0.711); total")
     cells = alt(CATALOGUE["sobol_second_order"].plot(*study))
-    assert cells.startswith("Peak force: largest in row 1, column 2 (0.07).")
+    assert cells.startswith("Peak force: largest in row 1, column 1 (0.07).")
     lines = alt(CATALOGUE["total_order_convergence"].plot(*study))
     assert lines.startswith("Peak force: highest of 4: impact velocity: ")
 
