@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from impactlab.cli.options import assigned, given, new_file
+from impactlab.cli.options import assigned, given, new_file, stored_in
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -17,7 +17,9 @@ def animate(
     stored: Annotated[
         Path,
         typer.Argument(
-            metavar="STORED", help="Output of `impactlab simulate`, or a study's runs.nc."
+            metavar="STORED",
+            help="Output of `impactlab simulate`, a study's runs.nc, or results/NAME.",
+            callback=stored_in("runs.nc"),
         ),
     ],
     values: Annotated[

@@ -2,17 +2,73 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+
+def stored_in(*names: str) -> Callable[[Path], Path]:
+    """Return a callback that takes a folder of results, results/NAME, for the first file in it.
+
+    names: of the files; the first one is taken where none is there, so that the error names it.
+    """
+
+    def stored(value: Path) -> Path:
+        if not value.is_dir():
+            return value
+        files = [value / name for name in names]
+        return next(filter(Path.exists, files), files[0])
+
+    return stored
+
+
+def all_stored(values: list[Path]) -> list[Path]:
+    """Take a folder of results, results/NAME, for the files of a report in it."""
+    if len(values) == 1 and values[0].is_dir():
+        from impactlab.report.results import stored_files  # late: it loads xarray
+
+        return stored_files(values[0])
+    return values
+
+
+def study_or_design(value: Path) -> Path:
+    """Take a folder of results for its design.nc, or else for the study file."""
+    path = stored_in("design.nc")(value)
+    return path if path.exists() else _study_file(value)
+
+
+def _study_file(value: Path) -> Path:
+    """Take a folder of results for the study file that they are of."""
+    path = stored_in("runs.nc", "design.nc", "findings.nc")(value)
+    if path == value:
+        return value
+    from impactlab.files import opened
+
+    with opened(path) as stored:
+        file = str(stored.attrs.get("study_file", ""))
+    if not file:
+        raise ValueError(f"{path}: names no study file: name it instead, studies/NAME.yaml")
+    return Path(os.path.normpath(value / file))
+
+
 StudyFile = Annotated[
-    Path, typer.Argument(metavar="STUDY", help="A study file, studies/NAME.yaml.")
+    Path,
+    typer.Argument(
+        metavar="STUDY",
+        help="A study file, studies/NAME.yaml, or results/NAME.",
+        callback=_study_file,
+    ),
 ]
 RunsFile = Annotated[
-    Path, typer.Argument(metavar="RUNS", help="Solved runs, results/NAME/runs.nc.")
+    Path,
+    typer.Argument(
+        metavar="RUNS",
+        help="Solved runs, results/NAME/runs.nc, or results/NAME.",
+        callback=stored_in("runs.nc"),
+    ),
 ]
 RESULTS = Path("results")
 

@@ -11,15 +11,19 @@ import typer
 from impactlab.cli.options import (
     RESULTS,
     RunsFile,
+    all_stored,
     assigned,
     chosen,
     given,
     new_file,
     new_folder,
+    stored_in,
 )
 
-_STORED = "A study's runs.nc and analysis.nc, or a verification's findings.nc."
-StoredFiles = Annotated[list[Path], typer.Argument(metavar="STORED...", help=_STORED)]
+_STORED = "A study's runs.nc and analysis.nc, a verification's findings.nc, or results/NAME."
+StoredFiles = Annotated[
+    list[Path], typer.Argument(metavar="STORED...", help=_STORED, callback=all_stored)
+]
 Pictures = Annotated[Path | None, new_folder(help="Default: figures/ beside the first of them.")]
 
 
@@ -53,7 +57,12 @@ def analyse(
 
 def predict(
     surrogate: Annotated[
-        Path, typer.Argument(metavar="SURROGATE", help="results/NAME/surrogate.nc.")
+        Path,
+        typer.Argument(
+            metavar="SURROGATE",
+            help="results/NAME/surrogate.nc, or results/NAME.",
+            callback=stored_in("surrogate.nc"),
+        ),
     ],
     values: Annotated[
         list[str],
@@ -76,7 +85,10 @@ def predict(
 
 
 def figures(
-    stored: Annotated[list[Path], typer.Argument(metavar="STORED...", help=f"{_STORED} Or NAME.")],
+    stored: Annotated[
+        list[Path],
+        typer.Argument(metavar="STORED...", help=f"{_STORED} Or NAME.", callback=all_stored),
+    ],
     output: Annotated[
         Path | None, new_folder(help="Default: figures/ (or panels/) beside the first of them.")
     ] = None,

@@ -10,7 +10,15 @@ from typing import Annotated
 import typer
 
 from impactlab.cli.interrupt import stop_solving
-from impactlab.cli.options import RunsFile, StudyFile, chosen, given, new_file
+from impactlab.cli.options import (
+    RunsFile,
+    StudyFile,
+    chosen,
+    given,
+    new_file,
+    stored_in,
+    study_or_design,
+)
 
 Threads = Annotated[int, typer.Option(min=1, help="Threads.")]
 Force = Annotated[
@@ -104,7 +112,12 @@ def design(
 
 def run(
     design_file: Annotated[
-        Path, typer.Argument(metavar="STUDY", help="A study file, or its design.nc.")
+        Path,
+        typer.Argument(
+            metavar="STUDY",
+            help="A study file, its design.nc, or results/NAME.",
+            callback=study_or_design,
+        ),
     ],
     output: Annotated[Path | None, new_file(".nc", help="Default: results/NAME/runs.nc.")] = None,
     workers: Annotated[int, typer.Option(min=1, help="Threads or processes.")] = _ALL,
@@ -215,7 +228,12 @@ def calibrate(
 
 def verify(
     study: Annotated[
-        Path, typer.Argument(metavar="STUDY", help="A study file of checks, or its findings.nc.")
+        Path,
+        typer.Argument(
+            metavar="STUDY",
+            help="A study file of checks, its findings.nc, or results/NAME.",
+            callback=stored_in("findings.nc"),
+        ),
     ],
     output: Annotated[
         Path | None, new_file(".nc", help="Default: results/NAME/findings.nc.")

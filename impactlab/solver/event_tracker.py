@@ -11,6 +11,7 @@ from impactlab.solver.contact.history import Pair
 from impactlab.solver.contact.switch import is_damped
 from impactlab.solver.contact_damping import damped_force
 from impactlab.solver.jit import compiled, inlined
+from impactlab.solver.outputs import SHORT_PAUSE
 from impactlab.solver.types import Record, record
 
 EVENTS = record(
@@ -22,10 +23,10 @@ EVENTS = record(
 """At the last two steps: indentation delta, delta_before (m), mid-span deflection w, w_before
 (m), force F (N); F_before (N) of damped laws. t_peak (s): time of the largest force, which is that
 of the largest indentation but for damped laws; w_max (m). contacts: number begun;
-touching: 1 or 0; t_touch: when this contact began, t_first_end: when the first one ended (NaN:
-not yet), time_in_contact of the ended ones (s); v_exit (m/s): the sphere's velocity when the last
-contact ended; v_s, v_mid (m/s): of sphere and mid-span at the last audit. impulse (N s).
-energy_error: largest imbalance over the initial energy."""
+touching: 1 or 0; t_touch: when this contact began, t_first_end: when the first one ended (NaN: not
+yet), pauses shorter than SHORT_PAUSE of it left out, time_in_contact of the ended ones (s); v_exit
+(m/s): the sphere's velocity when the last contact ended; v_s, v_mid (m/s): of sphere and mid-span
+at the last audit. impulse (N s). energy_error: largest imbalance over the initial energy."""
 
 
 @compiled
@@ -110,6 +111,8 @@ def update_events(
         events.t_touch = t - dt * gap / (gap - gap_before)
         events.touching = 1.0
         events.contacts += 1.0
+        if events.t_touch < (1.0 + SHORT_PAUSE) * events.t_first_end:
+            events.t_first_end = np.nan
     if events.w > events.w_before and w <= events.w:  # a largest deflection lies between the steps
         _, value = vertex(events.w_before, events.w, w)
         events.w_max = max(events.w_max, value)

@@ -35,6 +35,10 @@ STIFFNESS_RATIO_OUTSIDE_DATA = 64
 CONTACT_CIRCLE_OUTSIDE_DATA = 128
 
 
+SHORT_PAUSE = 0.1
+"""Pauses shorter than this share of the first contact until then do not end it."""
+
+
 @dataclass(frozen=True)
 class Response:
     """A scalar answer of a run: its name, unit (UDUNITS) and meaning.
@@ -59,7 +63,14 @@ RESPONSES = (
         "time of the largest contact force",
         "indentation_still_growing",
     ),
-    Response("contact_duration", "s", "duration of the first contact", "first_contact_unfinished"),
+    Response(
+        "contact_duration",
+        "s",
+        "duration of the first contact",
+        "first_contact_unfinished",
+        "until the first pause that is at least a tenth as long as the contact before it: whether "
+        "the surfaces part for a moment depends on a hair's breadth",
+    ),
     Response("number_of_contacts", "1", "contacts begun within the duration"),
     Response("total_contact_time", "s", "time in contact, all contacts", "in_contact_at_end"),
     Response("maximum_indentation", "m", "largest indentation", "indentation_still_growing"),

@@ -53,6 +53,19 @@ def test_one_command_goes_from_a_study_to_its_report(folder):
     assert (results / "report.html").exists()
 
 
+def test_a_folder_of_results_is_as_good_as_its_files(folder):
+    impactlab("run", "studies/small.yaml", cwd=folder)
+    results = folder / "results" / "small"
+    for command in ("analyse", "figures", "report", "status"):
+        impactlab(command, "results/small", cwd=folder)
+    assert (results / "report.html").exists()
+    assert "9 runs" in impactlab("run", "results/small", cwd=folder).stdout
+    impactlab("design", "results/small", cwd=folder)
+    assert "9 runs" in impactlab("run", "results/small", cwd=folder).stdout
+    (results / "runs.nc").unlink()
+    assert "results/small/runs.nc" in called("analyse", "results/small", cwd=folder).stderr
+
+
 def test_one_command_takes_the_evidence_that_the_workflow_takes(folder):
     (folder / "studies" / "sample.yaml").write_text(
         SAMPLE.replace("{nodes: 21, points: 3}", "auto")

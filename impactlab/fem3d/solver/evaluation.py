@@ -10,6 +10,7 @@ from impactlab.fem3d.solver.material import ALONG, PEEQ
 from impactlab.fem3d.solver.mesh import BEAM, Mesh
 from impactlab.fem3d.solver.system import Group
 from impactlab.model.impact import Impact
+from impactlab.solver.outputs import SHORT_PAUSE
 from impactlab.types import Floats
 from impactlab.variables import STATUS_FLAGS
 
@@ -66,7 +67,7 @@ def history_responses(history: History, pause: float) -> tuple[dict[str, float],
     return {
         "peak_force": np.nan if growing else largest,
         "time_of_peak_force": np.nan if growing else peak_time,
-        "contact_duration": float(lasting[0]),
+        "contact_duration": first_duration(touches) if len(touches) else np.nan,
         "number_of_contacts": float(len(touches)),
         "total_contact_time": float(np.sum(lasting)),
         "impulse": impulse,
@@ -97,6 +98,19 @@ def contacts(time: Floats, force: Floats, pause: float) -> Floats:
         ends[-1] = np.nan
     starts = np.where(first == 0, 0.0, time[first])
     return np.stack([starts, ends], axis=1)
+
+
+def first_duration(touches: Floats) -> float:
+    """Return the duration in s of the first contact of the beam models, from those of `contacts`.
+
+    A pause shorter than SHORT_PAUSE of it is a part of it.
+    """
+    end = float(touches[0, 1])
+    for start, later in touches[1:]:
+        if start >= (1.0 + SHORT_PAUSE) * end:
+            break
+        end = float(later)
+    return end - float(touches[0, 0])
 
 
 def peak(time: Floats, values: Floats) -> tuple[float, float]:

@@ -6,7 +6,8 @@ import pytest
 from impactlab.solver import outputs
 from impactlab.solver.beam import make_grid
 from impactlab.solver.contact.history import CONTACT, load, make_pair
-from impactlab.solver.event_tracker import EVENTS
+from impactlab.solver.event_tracker import EVENTS, start, update_events
+from impactlab.solver.jit import compiled
 from impactlab.solver.outputs import RESPONSE, blank
 from impactlab.solver.responses import (
     read_beam,
@@ -46,6 +47,28 @@ def contact(case):
     record = np.zeros(1, CONTACT)[0]
     load(record, make_pair(case), 1e-4)
     return record
+
+
+@pytest.mark.parametrize(
+    ("pause", "duration"),
+    [(0.05, 2.05), (0.09, 2.09), (0.11, 1.0)],
+)
+def test_a_pause_below_a_tenth_does_not_end_the_first_contact(pause, duration):
+    """The surfaces part at 1, for the pause, then touch for 1; steps of 1e-3."""
+
+    @compiled
+    def march(events, pause):
+        start(events)
+        for step in range(1, 4000):
+            t = 1e-3 * step
+            delta = max(1.0 - t, min(t - 1.0 - pause, 2.0 + pause - t))
+            update_events(events, delta, 0.0, 0.0, 1.0, 0.0, t, 1e-3)
+
+    events = np.zeros(1, EVENTS)[0]
+    march(events, pause)
+    assert events.t_first_end == pytest.approx(duration, abs=1e-3)
+    assert events.contacts == 2
+    assert events.time_in_contact == pytest.approx(2.0, abs=1e-2)
 
 
 def read_everything(answer, case, events, contact, peeq):
