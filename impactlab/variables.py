@@ -20,6 +20,7 @@ from impactlab import wings
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver import outputs
 from impactlab.solver.contact import CONTACT_LAWS
+from impactlab.solver.outputs import SHORT_PAUSE as SHORT_PAUSE
 
 if TYPE_CHECKING:
     import xarray as xr

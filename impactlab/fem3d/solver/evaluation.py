@@ -10,9 +10,8 @@ from impactlab.fem3d.solver.material import ALONG, PEEQ
 from impactlab.fem3d.solver.mesh import BEAM, Mesh
 from impactlab.fem3d.solver.system import Group
 from impactlab.model.impact import Impact
-from impactlab.solver.outputs import SHORT_PAUSE
 from impactlab.types import Floats
-from impactlab.variables import STATUS_FLAGS
+from impactlab.variables import SHORT_PAUSE, STATUS_FLAGS
 
 _CAUSES = {
     "first_contact_unfinished": "contact_duration",
