@@ -98,7 +98,7 @@ def write_runs(runs: xr.Dataset, path: Path) -> None:
         return
     analysis, calibration = path.with_name("analysis.nc"), path.with_name("calibration.nc")
     if _identity(calibration, "study_sha256") not in ("", runs.attrs.get("study_sha256")):
-        for suffix in (".nc", ".svg", ".png"):
+        for suffix in (".nc", ".svg", ".png", ".html", ".index.json"):
             calibration.with_suffix(suffix).unlink(missing_ok=True)
         log.warning("%s: the calibration by the runs before is removed", path)
     if before not in _identity(analysis, "made_from").split():
