@@ -30,6 +30,7 @@ from impactlab.paper.statements.statement import (
 )
 from impactlab.types import Floats
 from impactlab.verification.solutions import bending, hertz, quadrature
+from impactlab.verification.solutions.contact_laws import LAWS
 from impactlab.verification.solutions.stronge import CONSTRAINT, HARDNESS, U_PLASTIC, stronge_impact
 
 EQUAL = 1e-9  # relative difference within which two forces agree
@@ -253,6 +254,48 @@ def beam_mass(data: Data, printed: float) -> Assessment:
     off = printed / mass - 1.0
     why = f"Printed and computed mass differ by {100 * off:.1f} % of the latter."
     return judged(numbers, abs(printed - mass) <= share * mass, why)
+
+
+@statement(
+    kind=Subject.MISPRINT,
+    text="Under Hertz's law repeated contacts accumulate permanent indentation.",
+    test="The indentation at which Hertz's unloading has no force left is above 0.",
+    cases=(("after 10 µm", 10e-6), ("after 100 µm", 100e-6)),
+    holds="Hertz's law is elastic: it unloads along its loading and leaves none",
+)
+def hertz_indentation(data: Data, depth: float) -> Assessment:
+    """Judge what the law's unloading leaves; depth: the largest indentation in m."""
+    impact = paper_impact()
+    steel = impact.beam.material
+    of = hertz.effective_modulus(impact), impact.sphere.radius, steel.yield_stress
+    loading, unloading = LAWS["hertz"]
+    force = loading(depth, *of, steel.poissons_ratio)
+    _, residual, _ = unloading(depth, force, *of, steel.poissons_ratio)
+    left = Number("indentation left over the largest", float(residual) / depth, "1", percent=True)
+    return judged((left,), residual > 0.0, "A part is left.", "None is left.")
+
+
+@statement(
+    kind=Subject.MISPRINT,
+    text="The sphere is elastic-perfectly plastic.",
+    test=(
+        "The largest mean pressure of the contact, 2.8 times the beam's yield stress (Tabor), "
+        "reaches that at which the sphere begins to yield, 1.1 times its own (Stronge's ϑ)."
+    ),
+    cases=(("at any velocity",),),
+    holds="the sphere stays elastic: its yield stress, of 2550 MPa, plays no part",
+)
+def sphere_yields(data: Data) -> Assessment:
+    """Judge the pressures of beam and sphere."""
+    impact = paper_impact()
+    pressure = HARDNESS * impact.beam.material.yield_stress
+    first = CONSTRAINT * impact.sphere.material.yield_stress
+    numbers = (
+        Number("largest mean pressure", pressure, "Pa"),
+        Number("the sphere's at first yield", first, "Pa"),
+    )
+    why = "The beam flows long before; in 3-D runs at 5 to 20 m/s the sphere has no PEEQ."
+    return judged(numbers, pressure >= first, "The sphere yields.", why)
 
 
 @statement(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
@@ -141,6 +142,33 @@ def indentation_grows(data: Data, law: str, left: bool) -> Assessment:
     shrinks = f"It does not from {', '.join(steps)} m/s."
     why = "It grows at every step."
     return judged(numbers, not steps, why, shrinks, literal=law == "stronge")
+
+
+@statement(
+    text="The circle of contact is small beside the beam.",
+    test=(
+        "a + U ≤ H/10; a = √(R (2 δ − δ_y)), Stronge's radius at the largest indentation δ; H: the "
+        "beam's depth. The paper does not say how small: the tenth is a reading."
+    ),
+    cases=(("0.99 m/s", 0.99), ("5 m/s", 5.0), ("highest velocity", None)),
+    studies=(CONTACT_STUDY,),
+)
+def circle_is_small(data: Data, velocity: float | None) -> Assessment:
+    """Judge the radius over the depth of the beam; velocity: in m/s, None for the highest."""
+    curve = response_curve(data, CONTACT_STUDY, "maximum_indentation", contact="stronge")
+    velocity = max(curve) if velocity is None else velocity
+    if velocity not in curve:
+        raise UnknownError(f"the study {CONTACT_STUDY} has no run at {velocity:g} m/s")
+    impact, deepest = paper_impact(), curve[velocity]
+    first_yield = stronge_impact(impact).yield_indentation
+    radii = [
+        math.sqrt(impact.sphere.radius * max(2.0 * depth - first_yield, depth))
+        for depth in (deepest.low, deepest.value, deepest.high)
+    ]
+    low, share, high = (radius / impact.beam.depth for radius in radii)
+    number = Number("a/H", share, "1", 0.5 * (high - low), percent=True)
+    small, large = "It is below a tenth.", "It is not below a tenth."
+    return judged((number,), number.high <= 0.1, small, large, literal=False)
 
 
 def _low_velocities(data: Data) -> Iterator[tuple[str, float]]:

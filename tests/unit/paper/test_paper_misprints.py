@@ -20,6 +20,8 @@ HOLDS, _, FAILS, _ = Ruling
         (misprints.beam_mass, [FAILS]),
         (misprints.few_points, [FAILS] * 4),
         (misprints.restitution, [FAILS]),
+        (misprints.hertz_indentation, [FAILS] * 2),
+        (misprints.sphere_yields, [FAILS]),
     ],
 )
 def test_verdicts(statement, expected):

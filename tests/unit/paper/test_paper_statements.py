@@ -53,6 +53,13 @@ def fig08(grid_runs):
     return build
 
 
+def test_the_circle_grows_beyond_a_tenth_of_the_depth(fig08):
+    """6e-5 m per m/s: the root of 2 R delta is 2 mm at 0.99 m/s and 4.6 mm at 5 m/s."""
+    found = list(velocity.circle_is_small.judge(fig08(laws=("stronge",))))
+    assert verdicts(found)[::2] == [READING, FAILS]
+    assert found[0].numbers[0].value == pytest.approx(0.0722, abs=2e-3)
+
+
 def test_duration_falls(fig08):
     assert verdicts(velocity.duration_falls.judge(fig08())) == [HOLDS]
     assert verdicts(velocity.duration_falls.judge(fig08(power=0.2))) == [FAILS]
