@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure as Drawing
-from matplotlib.image import AxesImage
 from numpy.typing import NDArray
 
 from impactlab.figures import access, labels, measures, record, responses_grid, scales, style
@@ -32,6 +32,7 @@ _SAMPLES = "base_samples"
 _ENDS = (-0.25, 1.25)
 """Largest limits of the axis; intervals from few samples can be many times wider."""
 _PAIRS = "second_order"
+_CELLS = "Blues"
 _WEAK = 0.1  # smallest upper end of the colour scale
 
 
@@ -212,12 +213,13 @@ def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     tops = [np.max(values[n], initial=_WEAK, where=where) for n, where in significant.items()]
     colours = Normalize(0.0, max(map(float, tops)))
     for name, ax in axes.items():
-        image = _map(ax, values[name][:-1, 1:], significant[name][:-1, 1:], colours)
+        _map(ax, values[name][:-1, 1:], significant[name][:-1, 1:], colours)
         responses_grid.warn(ax, access.verdict(analysis, _VERDICT, name))
         _name_pairs(ax, listed)
     thin = 20 * min(len(axes), 2)
+    scale = ScalarMappable(colours, _CELLS)
     bar = figure.colorbar(
-        image, ax=figure.axes, location="bottom", fraction=0.05, aspect=thin, shrink=0.6
+        scale, ax=figure.axes, location="bottom", fraction=0.05, aspect=thin, shrink=0.6
     )
     bar.set_label("Share of the variance (–)")
     return figure
@@ -244,11 +246,11 @@ def pairs(index: xr.DataArray) -> Floats:
     return np.where(np.triu(np.ones_like(symmetric, dtype=bool), 1), symmetric, np.nan)
 
 
-def _map(ax: Axes, values: Floats, significant: NDArray[np.bool_], colours: Normalize) -> AxesImage:
+def _map(ax: Axes, values: Floats, significant: NDArray[np.bool_], colours: Normalize) -> None:
     """Draw the cells, with two decimals of their values, as a cell has no room for more."""
     shown = np.where(significant, values, np.nan)
     ax.imshow(np.where(np.isfinite(values), 0.93, np.nan), cmap="gray", vmin=0, vmax=1)
-    image = ax.imshow(shown, cmap="Blues", norm=colours, interpolation="nearest")
+    ax.imshow(shown, cmap=_CELLS, norm=colours, interpolation="nearest")
     for row, column in np.argwhere(np.isfinite(values) & significant):
         value = values[row, column]
         colour = "white" if colours(value) > 0.55 else "black"
@@ -256,7 +258,6 @@ def _map(ax: Axes, values: Floats, significant: NDArray[np.bool_], colours: Norm
         if len(values) > _ROOMY:
             text = text.replace("0.", ".")
         ax.text(column, row, text, ha="center", va="center", fontsize=6, color=colour)
-    return image
 
 
 _ROOMY = 5  # largest number of columns that leave room for a zero before the point
@@ -268,8 +269,8 @@ def _name_pairs(ax: Axes, listed: list[str]) -> None:
     rows, columns = listed[:-1], listed[1:]
     if max(map(len, listed)) > _SHORT:
         rows = [f"{name} ({number})" for number, name in enumerate(rows, 1)]
-        columns = [f"({number})" for number in range(2, len(listed) + 1)]
-        ax.set_xlabel(labels.wrapped_axis(listed[-1], str(len(listed))))
+        columns = [str(number) for number in range(2, len(listed) + 1)]
+        ax.set_xlabel(labels.wrapped_axis(listed[-1], str(len(listed))), loc="right")
     count = len(rows)
     ax.set_yticks(range(count), rows)
     ax.set_xticks(range(count), columns)

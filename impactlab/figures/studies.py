@@ -168,13 +168,13 @@ def _indices(studies: Sequence[StudyResults], family: Family, names: Sequence[st
     parameters, meanings = rows_of(studies, measure, names)
     height = 12 + (1.4 + 2.3 * len(studies)) * len(parameters)
     figure, axes = responses_grid.panels(names, height, beneath=8)
-    for position, (name, ax) in enumerate(axes.items()):
+    for name, ax in axes.items():
         unit = Display(1.0, "") if family.shares else common_display(studies, name)
         for number, study in enumerate(studies):
             _bars(ax, study, measure, name, parameters, number, len(studies), unit)
         ax.axvline(0.0, color="0.15", linewidth=0.6)
         name_places(ax, "y", meanings)
-        ax.tick_params(axis="y", length=0, labelleft=position % responses_grid.COLUMNS == 0)
+        ax.tick_params(axis="y", length=0, labelleft=style.starts_row(ax))
         ax.grid(visible=False, axis="y")
         ax.set_ylim(len(parameters) - 0.5, -0.5)
         ax.set_xlim(min(ax.get_xlim()[0], 0.0), None)

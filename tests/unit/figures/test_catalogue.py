@@ -299,3 +299,15 @@ def test_one_panel_leads_a_convergence_study(study, title, request):
     assert (lead.name, lead.title) == (LEAD, title)
     (panel,) = lead.plot(runs, analysis).axes
     assert panel.get_title(loc="left") == "Peak force"
+
+
+@pytest.mark.parametrize("name", sorted(EXPECTED["sample_study"]))
+def test_a_panel_alone_fits_a_column(name, sample_study):
+    runs, analysis = sample_study
+    record = _figure(name, runs)
+    with style.alone(0, style.SINGLE):
+        drawn = _laid_out(record.plot(_few(name, runs, analysis), analysis))
+    assert drawn.get_figwidth() == pytest.approx(style.SINGLE * style.MILLIMETRE)
+    assert_texts_are_fit_for_print(drawn)
+    _assert_text_is_apart(drawn)
+    _assert_panels_and_legends_are_on_the_page_and_apart(drawn)
