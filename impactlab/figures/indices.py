@@ -221,7 +221,8 @@ def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     bar = figure.colorbar(
         scale, ax=figure.axes, location="bottom", fraction=0.05, aspect=thin, shrink=0.6
     )
-    bar.set_label("Share of the variance (–)")
+    narrow = len(figure.axes) == 2  # one panel, and the bar
+    bar.set_label("Share of the variance (–)", loc="right" if narrow else "center")
     return figure
 
 
