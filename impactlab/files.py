@@ -14,6 +14,7 @@ import shutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
+from difflib import get_close_matches
 from hashlib import blake2b
 from pathlib import Path
 from typing import Any
@@ -211,6 +212,8 @@ def opened(path: Path, *contents: str, indexed: bool = True) -> Iterator[xr.Data
     holds something else.
     """
     set_chunk_cache(_CACHE)
+    if not path.exists():
+        raise FileNotFoundError(f"{path}: there is no such file{_similar(path)}")
     with _readable(path):
         dataset = xr.open_dataset(
             path, engine="netcdf4", cache=False, create_default_indexes=indexed
@@ -291,6 +294,13 @@ def check_source(derived: xr.Dataset, path: Path, source: xr.Dataset, source_pat
             f"{path}: was not made from {source_path} as it is now: make it again with "
             f"`{CONTENTS[derived.attrs['content']]} {source_path}`"
         )
+
+
+def _similar(path: Path) -> str:
+    """Return a question that names a file of the same name in a similar folder; "" without."""
+    siblings = [str(other) for other in path.parent.parent.glob(f"*/{path.name}")]
+    near = get_close_matches(str(path), siblings, n=1, cutoff=0.8)
+    return f"; did you mean {near[0]}?" if near else ""
 
 
 @contextmanager

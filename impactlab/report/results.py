@@ -16,6 +16,7 @@ import xarray as xr
 from impactlab.figures.draw import draw_all, draw_findings
 from impactlab.figures.record import CAPTIONS, listed
 from impactlab.files import check_source, checked, identity, opened, read_netcdf
+from impactlab.model.checks import did_you_mean
 from impactlab.report import study, verification
 from impactlab.report.answer import answers
 from impactlab.report.listed import listed_reports
@@ -52,7 +53,9 @@ def stored_files(folder: Path) -> list[Path]:
         if (folder / kind.files[0]).exists():
             return [folder / name for name in kind.files]
     command = f"impactlab go studies/{folder.name}.yaml"
-    raise FileNotFoundError(f"{folder}: holds no results: make them with `{command}`")
+    files = (path for kind in (RUNS, FINDINGS) for path in folder.parent.glob(f"*/{kind.files[0]}"))
+    near = did_you_mean(folder.name, sorted(path.parent.name for path in files))
+    raise FileNotFoundError(f"{folder}: holds no results{near or f': make them with `{command}`'}")
 
 
 _FILES = ("report", "thumbnail")  # keys of an entry of the index: files, seen from its page
@@ -100,6 +103,8 @@ def _entry(report: Path) -> dict[str, Any] | None:
         files = [*map(report.with_name, kind.files)]
         if not files[0].exists():
             continue
+        with opened(files[0], "runs", "findings"):
+            pass  # another program's file is named, not left out
         try:
             with open_stored(files) as (_, datasets):
                 size, failed = kind.counts(datasets[0])
