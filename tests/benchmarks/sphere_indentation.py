@@ -1,25 +1,28 @@
-"""Indent an elastic-perfectly plastic half-space by a sphere: the data of `finite_element`.
+"""Indent an elastic-plastic half-space by a sphere: the data of `finite_element`.
 
     python tests/benchmarks/sphere_indentation.py OUT.csv --depth 30 --elements 60
 
 An axisymmetric quasi-static finite-element solve, load and unload, frictionless. Four-node
-quadrilaterals with the mean dilatation (Hughes 1980, B-bar), J2 plasticity by radial return with
-the consistent tangent (Simo and Taylor 1985), and, unless --small, an updated Lagrangian
-formulation with the rotation of Hughes and Winget (1980): strains of a step on the geometry at its
-middle, equilibrium on that at its end. The sphere, a rigid or an elastic half-space with the
-profile of a sphere, touches the nodes of the surface from above, by an active set; its elastic
-compliance is that of the same mesh. Steps are even in the radius of contact, and have to be short,
-since plastic flow depends on its path: from 2 to 200 delta_y, on 15 elements, 40 steps in equal
-ratios give 1 to 4 % less force than 400 even ones, 200 even ones 0.1 % less.
+quadrilaterals with the mean dilatation (Hughes 1980, B-bar), J2 plasticity with linear hardening,
+isotropic and kinematic, by radial return with the consistent tangent (Simo and Taylor 1985), and,
+unless --small, an updated Lagrangian formulation with the rotation of Hughes and Winget (1980):
+strains of a step on the geometry at its middle, equilibrium on that at its end. The sphere touches
+the nodes of the surface from above, by an active set. It is a half-space with the profile of a
+sphere: an elastic one with the compliance of the same mesh, in the share that --share leaves it (1
+for a rigid sphere); with --sphere-yield one that yields, on a second mesh like the first. Steps
+are even in the radius of contact, and have to be short, since plastic flow depends on its path:
+from 2 to 200 delta_y, on 15 elements, 40 steps in equal ratios give 1 to 4 % less force than 400
+even ones, 200 even ones 0.1 % less.
 
-Lengths are in radii of the sphere, stresses in yield stresses, nu = 0.3. x = delta/delta_y and
+Lengths are in radii of the sphere, stresses in yield stresses of the flat. x = delta/delta_y and
 F/F_y are those of the contact laws, for first yield at a mean pressure of 1.1 yield stresses
 (stronge). With --stress the half-space is stretched evenly beforehand, in all directions along its
 surface: the data of `contact_prestress`. With --axis a second file is written, the data of
 solver/contact/axis_lift.py: the displacement of the axis above that of the elastic half-space under
 the same contact pressure, over delta_y, at the depth where a/z is what the column says. Output: one
-row per equilibrium: elastic sphere or rigid, small strains or not, E*/S_y, that stress, elements
-over the largest radius, largest x so far, x, F/F_y, contact radius over that of the sphere.
+row per equilibrium: E*/S_y, the flat's share of 1/E*, its Poisson's ratio and hardening moduli over
+Young's, the sphere's yield stress, small strains or not, that stress, elements over the largest
+radius, largest x so far, x, F/F_y, contact radius over that of the sphere.
 """
 
 from __future__ import annotations
@@ -37,8 +40,12 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 NU = 0.3
+"""Of the sphere, and by default of the flat."""
 Array = np.ndarray[Any, Any]
-COLUMNS = ("sphere", "strains", "E_over_S", "stress", "elements", "x_max", "x", "F", "a_over_R")
+COLUMNS = (
+    *("E_over_S", "share", "nu", "isotropic", "kinematic", "sphere_yield", "strains", "stress"),
+    *("elements", "x_max", "x", "F", "a_over_R"),
+)
 AXIS = (0.1, 0.2, 0.3, 0.4)
 """Contact radius over the depths below the surface at which the axis is looked at."""
 _G = 1.0 / math.sqrt(3.0)
@@ -103,17 +110,29 @@ def _strain_matrices(x: Array) -> tuple[Array, Array, Array]:
 
 
 @numba.njit(cache=True)  # type: ignore[untyped-decorator]
-def assemble(  # noqa: C901 one loop over elements and points
-    X: Array, elements: Array, u: Array, du: Array, stress: Array, E: float, S: float, large: bool
-) -> tuple[Array, Array, Array]:
-    """Return internal forces (2 n,), element stiffnesses (e, 8, 8), new stresses (e, 4, 4).
+def _turned(s: Array, c: float, d: float) -> None:
+    """Turn a symmetric tensor rr zz tt rz by the angle of cosine c and sine d."""
+    rr, zz, rz = s[0], s[1], s[3]
+    s[0] = c * c * rr + 2 * c * d * rz + d * d * zz
+    s[1] = d * d * rr - 2 * c * d * rz + c * c * zz
+    s[3] = (c * c - d * d) * rz + c * d * (zz - rr)
 
-    X: nodes (n, 2); u: displacement before the step, du: its increment (n, 2); stress: before it.
+
+@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+def assemble(  # noqa: C901 one loop over elements and points
+    X: Array, elements: Array, u: Array, du: Array, state: Array, metal: Array, large: bool
+) -> tuple[Array, Array, Array]:
+    """Return internal forces (2 n,), element stiffnesses (e, 8, 8), new states (e, 4, 9).
+
+    X: nodes (n, 2); u: displacement before the step, du: its increment (n, 2); state: before it, of
+    each point stress (4), back stress (4) and equivalent plastic strain; metal: Young's modulus,
+    Poisson's ratio, yield stress, isotropic and kinematic hardening moduli.
     """
-    G, bulk = 0.5 * E / (1 + NU), E / (3 * (1 - 2 * NU))
+    E, nu, S, H_iso, H_kin = metal
+    G, bulk, H = 0.5 * E / (1 + nu), E / (3 * (1 - 2 * nu)), H_iso + H_kin
     forces = np.zeros(u.size)
     K = np.zeros((len(elements), 8, 8))
-    new = np.zeros_like(stress)
+    new = np.zeros_like(state)
     now, half, step = np.zeros((4, 2)), np.zeros((4, 2)), np.zeros(8)
     one = np.array([1.0, 1.0, 1.0, 0.0])
     for e in range(len(elements)):
@@ -127,29 +146,29 @@ def assemble(  # noqa: C901 one loop over elements and points
         B_now, _, weight = _strain_matrices(now)
         for p in range(4):
             strain = B[p] @ step
-            s = stress[e, p].copy()
+            s, back = state[e, p, :4].copy(), state[e, p, 4:8].copy()
             if large:
                 spin = 0.0
                 for i in range(4):
                     spin += 0.5 * (dN[p, i, 1] * step[2 * i] - dN[p, i, 0] * step[2 * i + 1])
                 turn = 2.0 * math.atan(0.5 * spin)
                 c, d = math.cos(turn), math.sin(turn)
-                rr, zz, rz = s[0], s[1], s[3]
-                s[0] = c * c * rr + 2 * c * d * rz + d * d * zz
-                s[1] = d * d * rr - 2 * c * d * rz + c * c * zz
-                s[3] = (c * c - d * d) * rz + c * d * (zz - rr)
+                _turned(s, c, d)
+                _turned(back, c, d)
             volume = strain[0] + strain[1] + strain[2]
-            pressure = (s[0] + s[1] + s[2]) / 3.0 + bulk * volume
-            trial = s - one * ((s[0] + s[1] + s[2]) / 3.0)
+            mean = (s[0] + s[1] + s[2]) / 3.0
+            pressure = mean + bulk * volume
+            trial = s - one * mean - back
             for k in range(3):
                 trial[k] += 2 * G * (strain[k] - volume / 3.0)
             trial[3] += G * strain[3]
             norm = math.sqrt(trial[0] ** 2 + trial[1] ** 2 + trial[2] ** 2 + 2 * trial[3] ** 2)
-            radius = math.sqrt(2.0 / 3.0) * S
-            share, bend = 1.0, 0.0
+            radius = math.sqrt(2.0 / 3.0) * (S + H_iso * state[e, p, 8])
+            share, bend, flow = 1.0, 0.0, 0.0
             if norm > radius:
-                share = radius / norm
-                bend = share
+                flow = (norm - radius) / (2 * G + 2.0 / 3.0 * H)
+                share = 1.0 - 2 * G * flow / norm
+                bend = 1.0 / (1.0 + H / (3 * G)) - (1.0 - share)
             C = np.zeros((4, 4))
             for k in range(3):
                 C[k, k] = 2 * G * share
@@ -160,8 +179,11 @@ def assemble(  # noqa: C901 one loop over elements and points
                 for k in range(4):
                     for m in range(4):
                         C[k, m] -= 2 * G * bend * trial[k] * trial[m] / norm**2
-            new[e, p] = share * trial + pressure * one
-            f = B_now[p].T @ new[e, p] * weight[p]
+            moved = back + (2.0 / 3.0 * H_kin * flow / norm if flow > 0.0 else 0.0) * trial
+            new[e, p, :4] = back + share * trial + pressure * one
+            new[e, p, 4:8] = moved
+            new[e, p, 8] = state[e, p, 8] + math.sqrt(2.0 / 3.0) * flow
+            f = B_now[p].T @ new[e, p, :4] * weight[p]
             K[e] += B_now[p].T @ (C @ B_now[p]) * weight[p]
             for i in range(4):
                 for k in range(2):
@@ -169,23 +191,19 @@ def assemble(  # noqa: C901 one loop over elements and points
     return forces, K, new
 
 
-class Solve:
-    """The half-space, the sphere and their state; x_max: the largest delta/delta_y to come."""
+class Mesh:
+    """Rings of four nodes about the contact: `number` over the radius a."""
 
-    def __init__(self, modulus: float, x_max: float, number: int, rigid: bool, small: bool):
-        self.E = (1.0 if rigid else 2.0) * (1.0 - NU**2) * modulus
-        self.delta_y, self.large = (0.825 * math.pi / modulus) ** 2, not small
-        self.F_y = 4.0 / 3.0 * modulus * self.delta_y**1.5
-        a = min(1.0, 0.72 + 0.1 * math.log10(x_max)) * 1.2 * math.sqrt(2 * x_max * self.delta_y)
+    def __init__(self, a: float, number: int) -> None:
         h = a / number
-        r = spacing(h, a, a)
-        z = -spacing(h, 0.5 * a, a)
+        r, z = spacing(h, a, a), -spacing(h, 0.5 * a, a)
         R, Z = np.meshgrid(r, z, indexing="ij")
         self.X, m = np.column_stack([R.ravel(), Z.ravel()]), len(z)
         i, j = (q.ravel() for q in np.meshgrid(range(len(r) - 1), range(m - 1), indexing="ij"))
         corners = [(i * m + j + 1), ((i + 1) * m + j + 1), ((i + 1) * m + j), (i * m + j)]
         self.elements = np.column_stack(corners).astype(np.int64)
         self.surface = np.arange(number + 3) * m
+        self.axis = np.arange(m - 1)  # the last one is held
         dofs = (2 * self.elements[:, :, None] + np.arange(2)).reshape(-1, 8)
         self.rows, self.columns = np.repeat(dofs, 8, axis=1).ravel(), np.tile(dofs, 8).ravel()
         held = np.zeros((len(r), m, 2), bool)
@@ -193,22 +211,68 @@ class Solve:
         self.free = np.flatnonzero(~held.ravel())
         self.place = np.full(held.size, -1)
         self.place[self.free] = np.arange(self.free.size)
-        self.u, self.stress = np.zeros_like(self.X), np.zeros((len(self.elements), 4, 4))
-        self.force, self.delta, self.radius = np.zeros(self.surface.size), 0.0, 0.0
-        self.rate, self.last = np.zeros_like(self.X), 0.0
-        none = np.zeros_like(self.X)
-        args = self.X, self.elements, none, none, self.stress, self.E, 1.0, False
-        push = np.zeros((self.free.size, self.surface.size))
-        push[self.place[2 * self.surface + 1], range(self.surface.size)] = 1.0
-        moved = splu(self._matrix(assemble(*args)[1])).solve(push)
-        self.compliance = 0.0 * push.T @ push if rigid else push.T @ moved
-        self.axis = np.arange(m - 1)  # the last one is held
-        self.elastic = moved[self.place[2 * self.axis + 1]]
 
-    def _matrix(self, K: Array) -> sparse.csc_array:
+    def matrix(self, K: Array) -> sparse.csc_array:
+        """Return the stiffness of the free displacements."""
         size = self.place.size
         whole = sparse.coo_array((K.ravel(), (self.rows, self.columns)), (size, size)).tocsr()
         return whole[self.free][:, self.free].tocsc()
+
+
+class Body:
+    """A half-space on the mesh, with its state; metal: see `assemble`."""
+
+    def __init__(self, mesh: Mesh, metal: Array, large: bool) -> None:
+        self.mesh, self.metal, self.large = mesh, metal, large
+        self.u, self.state = np.zeros_like(mesh.X), np.zeros((len(mesh.elements), 4, 9))
+        self.rate = np.zeros_like(mesh.X)
+
+    def assembled(self, du: Array) -> tuple[Array, Array, Array]:
+        """Return internal forces, element stiffnesses and new states after the step `du`."""
+        mesh = self.mesh
+        return assemble(mesh.X, mesh.elements, self.u, du, self.state, self.metal, self.large)
+
+
+class Solve:
+    """Flat, sphere and contact.
+
+    modulus: E*/S_y of the flat; x_max: the largest delta/delta_y to come; number: of elements over
+    the largest radius; share: of the flat in the compliance 1/E*; hardening: of the flat, isotropic
+    and kinematic moduli over Young's modulus; sphere_yield: stress over the flat's.
+    """
+
+    def __init__(
+        self,
+        modulus: float,
+        x_max: float,
+        number: int,
+        *,
+        share: float = 0.5,
+        nu: float = NU,
+        hardening: tuple[float, float] = (0.0, 0.0),
+        sphere_yield: float = math.inf,
+        large: bool = True,
+    ) -> None:
+        self.delta_y, self.large = (0.825 * math.pi / modulus) ** 2, large
+        self.F_y = 4.0 / 3.0 * modulus * self.delta_y**1.5
+        a = min(1.0, 0.72 + 0.1 * math.log10(x_max)) * 1.2 * math.sqrt(2 * x_max * self.delta_y)
+        self.mesh = Mesh(a, number)
+        self.E = (1.0 - nu**2) * modulus / share
+        metal = np.array([self.E, nu, 1.0, *(self.E * ratio for ratio in hardening)])
+        self.bodies = [Body(self.mesh, metal, large)]
+        nodes, place, free = self.mesh.surface, self.mesh.place, self.mesh.free
+        push = np.zeros((free.size, nodes.size))
+        push[place[2 * nodes + 1], range(nodes.size)] = 1.0
+        K = self.bodies[0].assembled(np.zeros_like(self.mesh.X))[1]
+        moved = splu(self.mesh.matrix(K)).solve(push)
+        self.compliance = (1.0 - share) / share * push.T @ moved
+        self.elastic = moved[place[2 * self.mesh.axis + 1]]
+        if math.isfinite(sphere_yield):
+            self.compliance *= 0.0
+            E = (1.0 - NU**2) * modulus / (1.0 - share)
+            sphere = np.array([E, NU, sphere_yield, 0.0, 0.0])
+            self.bodies.append(Body(self.mesh, sphere, large))
+        self.force, self.delta, self.radius, self.last = np.zeros(nodes.size), 0.0, 0.0, 0.0
 
     def move(self, delta: float, halvings: int = 0) -> tuple[float, float]:
         """Go to `delta`, in several steps where one finds none; return (force, contact radius)."""
@@ -221,76 +285,131 @@ class Solve:
 
     def lift(self) -> Array:
         """Return how much higher the axis lies than by the same forces on elastic metal."""
-        above = self.u[self.axis, 1] + self.elastic @ self.force
-        return np.interp(self.radius / np.array(AXIS), -self.X[self.axis, 1], above)
+        mesh = self.mesh
+        above = self.bodies[0].u[mesh.axis, 1] + self.elastic @ self.force
+        return np.interp(self.radius / np.array(AXIS), -mesh.X[mesh.axis, 1], above)
+
+    def _profile(self, r: Array) -> tuple[Array, Array]:
+        """Return height and slope of the sphere; of a paraboloid, without its slope, if small."""
+        if not self.large:
+            return 0.5 * r**2, 0.0 * r
+        down = np.sqrt(1.0 - np.minimum(r**2, 0.999))
+        return 1.0 - down, r / down
+
+    def _gap(
+        self, us: list[Array], force: Array, delta: float, segments: Array | None
+    ) -> tuple[Array, Array, list[sparse.csr_array], Array | None]:
+        """Return radius and gap at the flat's nodes, and its derivatives by both displacements.
+
+        The surface of a sphere that yields is its profile, moved as that of a half-space; segments:
+        of it, one under each node of the flat, returned too. They are those of the step's start, or
+        Newton's method would cycle between two.
+        """
+        nodes, place = self.mesh.surface, self.mesh.place
+        X, lines = self.mesh.X[nodes, 0], np.arange(nodes.size)
+        r = X + (us[0][nodes, 0] if self.large else 0.0)
+        height, slope = self._profile(r)
+        derivatives = []
+        for u in us[1:]:
+            v = u[nodes]
+            R = X + (v[:, 0] if self.large else 0.0)
+            if segments is None:
+                segments = np.clip(np.searchsorted(R, r) - 1, 0, nodes.size - 2)
+            j, k = segments, segments + 1
+            s = (r - R[j]) / (R[k] - R[j])
+            height, slope = self._profile(X[j] + s * (X[k] - X[j]))
+            height = height - (v[j, 1] + s * (v[k, 1] - v[j, 1]))
+            if self.large:
+                slope = (slope * (X[k] - X[j]) - (v[k, 1] - v[j, 1])) / (R[k] - R[j])
+            weights = (j, 1.0 - s), (k, s)
+            terms = [(lines, place[2 * nodes[n] + 1], -weight) for n, weight in weights]
+            terms += [(lines, place[2 * nodes[n]], -weight * slope) for n, weight in weights]
+            derivatives.append(self._sparse(terms))
+        of_flat = [(lines, place[2 * nodes], slope), (lines, place[2 * nodes + 1], 0.0 * r - 1.0)]
+        gap = height - delta + self.compliance @ force - us[0][nodes, 1]
+        return r, gap, [self._sparse(of_flat), *derivatives], segments
+
+    def _sparse(self, terms: list[tuple[Array, Array, Array]]) -> sparse.csr_array:
+        rows, columns, values = (np.concatenate(part) for part in zip(*terms, strict=True))
+        free = columns >= 0  # the node on the axis does not move sideways
+        shape = self.mesh.surface.size, self.mesh.free.size
+        return sparse.coo_array((values[free], (rows[free], columns[free])), shape).tocsr()
 
     def _balance(self, delta: float) -> bool:
         """Find the equilibrium at `delta` and keep it; return False where Newton's method fails."""
-        force, nodes, step = self.force.copy(), self.surface, delta - self.delta
-        du = self.rate * (step if step * self.last > 0.0 else 0.0)  # the answer does not need it
+        free, step = self.mesh.free, delta - self.delta
+        force, segments = self.force.copy(), None
+        # the answer does not need it
+        steps = [body.rate * (step if step * self.last > 0.0 else 0.0) for body in self.bodies]
+        penalty = self.E * self.mesh.X[self.mesh.surface[1], 0]
         for _ in range(30):
-            f, K, stress = assemble(
-                self.X, self.elements, self.u, du, self.stress, self.E, 1.0, self.large
-            )
-            moved = (self.u + du)[nodes]
-            r = self.X[nodes, 0] + (moved[:, 0] if self.large else 0.0)
-            if not np.abs(r).max() < 1.0:
+            parts = [body.assembled(du) for body, du in zip(self.bodies, steps, strict=True)]
+            us = [body.u + du for body, du in zip(self.bodies, steps, strict=True)]
+            if not np.abs(us[0]).max() < 1.0:
                 return False
-            profile = 1.0 - np.sqrt(1.0 - r**2) if self.large else 0.5 * r**2
-            slope = r / np.sqrt(1.0 - r**2) if self.large else np.zeros_like(r)
-            gap = profile - delta + self.compliance @ force - moved[:, 1]
-            on = force - self.E * self.X[nodes[1], 0] * gap > 0.0
-            lines, pair = np.flatnonzero(on), np.arange(on.sum())
-            at_r, at_z = self.place[2 * nodes[on]], self.place[2 * nodes[on] + 1]
-            turned = at_r >= 0  # the node on the axis does not move sideways
-            D = sparse.coo_array(
-                (
-                    np.r_[slope[on][turned], -np.ones(pair.size)],
-                    (np.r_[pair[turned], pair], np.r_[at_r[turned], at_z]),
-                ),
-                (pair.size, self.free.size),
-            ).tocsc()
-            residual = f[self.free] - D.T @ force[on]
+            r, gap, derivatives, segments = self._gap(us, force, delta, segments)
+            on = force - penalty * gap > 0.0
+            lines = np.flatnonzero(on)
+            rows = [D[lines] for D in derivatives]
+            residual = [
+                part[0][free] - D.T @ force[on] for part, D in zip(parts, rows, strict=True)
+            ]
             lost = self.compliance[np.ix_(lines, np.flatnonzero(~on))] @ -force[~on]
             size = max(float(force.sum()), 1e-3 * self.F_y)
             error = max(
-                np.abs(residual).max() / size,
+                *(np.abs(forces).max() / size for forces in residual),
                 np.abs(gap[on]).max(initial=0.0) / delta,
                 np.abs(force[~on]).max(initial=0.0) / size,
             )
             if error < 1e-7:
                 break
-            system = sparse.block_array(
-                [[self._matrix(K), -D.T], [D, sparse.csc_array(self.compliance[np.ix_(on, on)])]],
-                format="csc",
-            )
+            blocks: list[list[Any]] = [
+                [self.mesh.matrix(part[1]) if k == i else None for k in range(len(rows))] + [-D.T]
+                for i, (part, D) in enumerate(zip(parts, rows, strict=True))
+            ]
+            corner = sparse.csc_array(self.compliance[np.ix_(lines, lines)])
+            system = sparse.block_array([*blocks, [*rows, corner]], format="csc")
             try:
-                answer = splu(system).solve(np.r_[-residual, -gap[on] - lost])
+                right = np.concatenate([*(-forces for forces in residual), -gap[on] - lost])
+                answer = splu(system).solve(right)
             except RuntimeError:  # singular
                 return False
-            du.ravel()[self.free] += answer[: self.free.size]
-            force[on] += answer[self.free.size :]
+            for i, du in enumerate(steps):
+                du.ravel()[free] += answer[i * free.size : (i + 1) * free.size]
+            force = force.copy()
+            force[on] += answer[len(rows) * free.size :]
             force[~on] = 0.0
         else:
             return False
-        self.rate, self.last = du / step, step
-        self.u, self.stress, self.force, self.delta = self.u + du, stress, force, delta
+        for body, du, part in zip(self.bodies, steps, parts, strict=True):
+            body.rate, body.u, body.state = du / step, body.u + du, part[2]
+        self.force, self.delta, self.last = force, delta, step
         self.radius = float(r[force > 0].max(initial=0.0))
         return True
 
 
 def run(args: argparse.Namespace) -> None:
     """Load to the depth and unload from the depths asked for; append rows to the file."""
-    solve = Solve(args.modulus, args.depth, args.elements, args.rigid, args.small)
-    solve.stress[:, :, [0, 2]] = args.stress
-    bodies = "rigid" if args.rigid else "elastic", "small" if args.small else "large"
-    kind = *bodies, args.modulus, args.stress
+    hardening = args.isotropic, args.kinematic
+    solve = Solve(
+        args.modulus,
+        args.depth,
+        args.elements,
+        share=args.share,
+        nu=args.nu,
+        hardening=hardening,
+        sphere_yield=args.sphere_yield,
+        large=not args.small,
+    )
+    solve.bodies[0].state[:, :, [0, 2]] = args.stress
+    metals = args.modulus, args.share, args.nu, *hardening, args.sphere_yield
+    kind = *metals, "small" if args.small else "large", args.stress
     begun, rows, lifts = time.process_time(), [], []
 
-    def note(x: float, top: float) -> float:
+    def note(x: float, top: str) -> float:
         F, a = solve.move(x * solve.delta_y)
         rows.append((*kind, args.elements, top, f"{x:.6g}", f"{F / solve.F_y:.7g}", f"{a:.5g}"))
-        lifts.append((f"{x:.6g}", *(f"{each:.4g}" for each in solve.lift() / solve.delta_y)))
+        lifts.append((f"{x:.6g}", *(f"{lift:.4g}" for lift in solve.lift() / solve.delta_y)))
         return F
 
     tops = {*(args.unload or []), args.depth}
@@ -301,13 +420,15 @@ def run(args: argparse.Namespace) -> None:
         else:
             solve.move(x * solve.delta_y)
         if x in tops and x in (args.unload or []):
-            kept = solve.u, solve.stress, solve.force, solve.delta
+            loaded = [(body.u, body.state) for body in solve.bodies], solve.force, solve.delta
             F_m, depth, step = solve.force.sum(), x, 0.0
             step = 0.1 * F_m / (2.0 * args.modulus * math.sqrt(x * solve.delta_y)) / solve.delta_y
             while note(depth := depth - min(step, 0.9 * depth), f"{x:.6g}") > 0.03 * F_m:
-                left, fell = float(rows[-1][6]), float(rows[-2][6]) - float(rows[-1][6])
+                left, fell = float(rows[-1][-2]), float(rows[-2][-2]) - float(rows[-1][-2])
                 step *= min(0.15 * F_m / solve.F_y, 0.45 * left) / fell
-            solve.u, solve.stress, solve.force, solve.delta = kept
+            states, solve.force, solve.delta = loaded
+            for body, (u, state) in zip(solve.bodies, states, strict=True):
+                body.u, body.state = u, state
     new = not Path(args.output).exists()
     with Path(args.output).open("a", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
@@ -317,19 +438,25 @@ def run(args: argparse.Namespace) -> None:
     if args.axis:
         with Path(args.axis).open("w", encoding="utf-8", newline="") as file:
             csv.writer(file, lineterminator="\n").writerows([("x", *AXIS), *lifts])
-    print(*kind, args.depth, len(solve.X), f"{time.process_time() - begun:.0f} s", flush=True)
+    print(*kind, args.depth, len(solve.mesh.X), f"{time.process_time() - begun:.0f} s", flush=True)
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("output")
     parser.add_argument("--modulus", type=float, default=115e9 / 345e6, help="E*/S_y")
+    parser.add_argument("--share", type=float, default=0.5, help="of the flat in 1/E*")
+    parser.add_argument("--nu", type=float, default=NU, help="Poisson's ratio of the flat")
+    parser.add_argument(
+        "--isotropic", type=float, default=0.0, help="hardening over Young's modulus"
+    )
+    parser.add_argument("--kinematic", type=float, default=0.0, help="the same")
+    parser.add_argument("--sphere-yield", type=float, default=math.inf, help="over the flat's")
     parser.add_argument("--depth", type=float, required=True, help="largest delta/delta_y")
     parser.add_argument("--unload", type=float, nargs="*", help="unload from these, too")
     parser.add_argument("--elements", type=int, default=60, help="over the largest radius")
     parser.add_argument("--stress", type=float, default=0.0, help="along the surface, over S_y")
     parser.add_argument("--steps", type=int, default=200, help="of loading")
     parser.add_argument("--axis", help="write the displacement of the axis to this file, too")
-    parser.add_argument("--rigid", action="store_true")
     parser.add_argument("--small", action="store_true", help="small strains, a paraboloid")
     run(parser.parse_args())
