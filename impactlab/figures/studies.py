@@ -37,7 +37,7 @@ _MATTERS = 0.01
 _STEPS = 300  # most steps drawn of a cumulative curve
 _LINES = 3  # most curves per study
 _WIDER = 1.6
-"""Width by which the line of a study exceeds that of the next one, pt."""
+"""Step in line width between successive studies, pt."""
 _FEWEST = 2  # smallest number of common values for an axis
 
 

@@ -1,4 +1,4 @@
-"""What changes between studies, in sentences: shares of parameters, or responses of grids."""
+"""Sentences on changes between studies: shares of parameters, or responses of grids."""
 
 from __future__ import annotations
 

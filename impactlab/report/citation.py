@@ -1,4 +1,4 @@
-"""How to cite the software, and what made a page: the foot of every page."""
+"""The foot of every page: how to cite the software, and what the page was made from."""
 
 from __future__ import annotations
 

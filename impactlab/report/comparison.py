@@ -192,7 +192,7 @@ def _differences(studies: Sequence[StudyResults]) -> Table:
 
 
 def _flat(content: object, path: tuple[str, ...] = ()) -> dict[str, str]:
-    """Return the values of a study file as text, by dotted key."""
+    """Map dotted keys of a study file to their values as text."""
     if not isinstance(content, dict):
         entries = content if isinstance(content, list) else [content]
         texts = [str(entry) for entry in entries]

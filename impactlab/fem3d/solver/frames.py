@@ -1,4 +1,4 @@
-"""The plane of symmetry along the beam, kept at times of a run."""
+"""Snapshots of the plane of symmetry along the beam during a run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FRAMES = {
 
 
 class Frames:
-    """What is kept of a system: corners of the plane's faces, and the strain of their elements."""
+    """Displaced corners of the plane's faces, and the strain of their elements, over time."""
 
     def __init__(self, system: System) -> None:
         """Keep the beginning."""

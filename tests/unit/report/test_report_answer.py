@@ -169,7 +169,7 @@ def test_an_effect_on_small_values_alone_is_one():
 
 
 def test_a_trend_is_that_of_complete_curves():
-    """Where the large answers fail at the high end, the mean of the others falls."""
+    """The mean of the other curves falls where large answers fail at the high end."""
     depths = np.array([0.01, 0.02, 0.03, 0.04])
     values = 1e3 * SPEEDS[:, None] ** 0.2 * np.array([1.0, 1.0, 1.0, 20.0])
     values[3:, 3] = np.nan

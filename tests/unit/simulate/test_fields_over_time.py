@@ -1,4 +1,4 @@
-"""Deflection and plastic strain along the beam at times within a run."""
+"""Deflection and plastic strain along the beam while a run lasts."""
 
 import warnings
 from dataclasses import replace
