@@ -51,9 +51,7 @@ def witness(
     ] = "",
     duration: Annotated[
         str,
-        typer.Option(
-            help="Simulated time, such as '0.45 ms'. Default: what the first contact needs."
-        ),
+        typer.Option(help="Simulated time, such as '0.45 ms'. Default: through the first contact."),
     ] = "",
     workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
     output: Annotated[

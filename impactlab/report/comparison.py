@@ -323,7 +323,7 @@ def _write_page(
         answers=found.lines,
         note="",
         leading=figures.pop(LEAD, None),
-        facts=[labels.counted(len(studies), "study").replace("studys", "studies")],
+        facts=[f"{len(studies)} studies"],
         ending="",
         pictures=figures,
         files="figures",
