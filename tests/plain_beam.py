@@ -329,8 +329,10 @@ def _contacts(impact: il.Impact, run: Run) -> dict[str, float]:
     leaving = apart and v_s[-1] < 0.0 and v_s[-1] < v_beam
     exit_velocity = -v_s[ends[-1]] if leaving else np.nan
     time_in_contact = crossing[ends].sum() - crossing[begins].sum()
+    pauses = np.append(crossing[begins], np.inf)[: ends.size] / crossing[ends] - 1.0
+    lasting = ends[pauses >= 0.1]  # shorter ones are parts of the contact
     return {
-        "contact_duration": crossing[ends[0]] if ends.size else np.nan,
+        "contact_duration": crossing[lasting[0]] if lasting.size else np.nan,
         "number_of_contacts": 1.0 + begins.size,
         "total_contact_time": time_in_contact if apart else np.nan,
         "permanent_indentation": dent[-1] if apart else np.nan,

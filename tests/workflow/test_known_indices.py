@@ -132,7 +132,7 @@ def test_the_report_tells_what_is_known(ishigami, tmp_path):
     write_report(runs, analysis, tmp_path / "figures", tmp_path / "report.html")
     page = (tmp_path / "report.html").read_text()
     assert re.search(
-        r"x1 \(5\d ±.\d.%, 3[12].%.alone, exactly 55.8.%\), x2 \(4\d ±.\d.%, exactly 44.2.%\)", page
+        r"x1 \(5\d.±.\d.%, 3[12].%.alone, exactly 55.8.%\), x2 \(4\d.±.\d.%, exactly 44.2.%\)", page
     )
     assert "NaN" not in re.sub(r"base64,[^\"]*", "", page)
 

@@ -90,7 +90,7 @@ def page():
     return Page
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")  # its event loop runs until then
 def browser():
     """Chromium, as Debian has it."""
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")

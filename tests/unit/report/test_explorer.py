@@ -125,7 +125,7 @@ def test_the_command_is_for_the_folder_of_the_project(sample, folder, visit, mon
         assert command[2] == f"{folder.name}/surrogate.nc"
         page.context.grant_permissions(["clipboard-read", "clipboard-write"])
         page.click("#copy")
-        assert page.locator("#copy").inner_text() == "Copied"
+        page.get_by_text("Copied", exact=True).wait_for()
         assert shlex.split(page.evaluate("navigator.clipboard.readText()")) == command
         move(page, "velocity", 0.3)
         assert page.locator("#copy").inner_text() == "Copy"

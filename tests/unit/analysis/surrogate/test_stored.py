@@ -86,8 +86,11 @@ def test_a_prediction_smaller_than_its_error_is_not_usable(loaded, capsys, monke
     found = loaded.predict(**POINT)
     assert found["peak_force"].attrs["verdict"] == "imprecise"
     print_predictions(found)
-    assert "imprecise: the error is 140 % of the prediction" in capsys.readouterr().out
-    loaded.dataset["error"][at] *= 0.09 / 1.4
+    assert "imprecise: zero lies within the error" in capsys.readouterr().out
+    loaded.dataset["error"][at] *= 0.4 / 1.4
+    print_predictions(loaded.predict(**POINT))
+    assert "imprecise: the error is 40 % of the prediction" in capsys.readouterr().out
+    loaded.dataset["error"][at] *= 0.09 / 0.4
     assert loaded.predict(**POINT)["peak_force"].attrs["verdict"] == "usable"
 
 

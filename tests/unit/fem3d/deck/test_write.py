@@ -94,7 +94,7 @@ def test_header_says_what_it_is(tmp_path, impact, mesh, flavour):
         ({"flavour": "ansys"}, "deck.flavour = 'ansys': must be one of abaqus, calculix"),
         ({"duration": 0.0}, "deck.duration = 0.0: must be above zero"),
         ({"duration": "long"}, "deck.duration = 'long': must be a finite number"),
-        ({"impact": None}, "deck.impact = None: must be a Impact"),
+        ({"impact": None}, "deck.impact = None: must be an Impact"),
         ({"interval": 1.0}, "deck.interval = 1.0 s: must not be above the duration"),
         ({"mesh": None}, "deck.mesh = None: must be a Mesh"),
         ({"path": "no/such/folder/deck.inp"}, "cannot write no/such/folder/deck.inp: No such"),
