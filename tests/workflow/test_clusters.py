@@ -84,6 +84,7 @@ def namespaces():
         yield names
 
 
+@pytest.mark.long
 def test_three_workers_in_networks_of_their_own(folder, namespaces, in_threads):
     with Cluster(folder, f"{NETWORK}.254") as cluster:
         for name in namespaces:
@@ -107,6 +108,7 @@ def tls(tmp_path):
     return {f"DASK_DISTRIBUTED__COMM__{name}": value for name, value in settings.items()}
 
 
+@pytest.mark.long
 def test_certificates_of_dask_are_asked_for(folder, in_threads, tls):
     with Cluster(folder, protocol="tls", **tls) as cluster:
         cluster.add()

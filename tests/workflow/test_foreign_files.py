@@ -240,6 +240,7 @@ def test_lazy_values_get_the_digests_of_those_in_memory(results, tmp_path):
     assert same == read_netcdf(path, "runs").attrs["checksums"]
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore")
 def test_every_file_follows_cf(results):
     """But for one rule: `time`, since first touch, is no date and has no standard_name."""

@@ -147,6 +147,7 @@ def test_every_variable_is_described(discretisation, sample):
                 assert variable.attrs["units"] == "1"
 
 
+@pytest.mark.long
 def test_a_sample_is_analysed_one_response_at_a_time(sample_runs, tmp_path, monkeypatch):
     """Memory holds fewer than 6 columns; the responses and parameters of the runs are 12."""
     monkeypatch.setattr(saltelli, "_ROWS", 1024)
