@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import scipy.stats
 import xarray as xr
+from ruamel.yaml import YAML
 
 import impactlab as il
 from impactlab.analysis import surrogate
@@ -27,7 +28,8 @@ from impactlab.simulate import solve
 NUMBER = int(sys.argv[1]) if len(sys.argv) > 1 else 200
 RUNS = int(sys.argv[2]) if len(sys.argv) > 2 else 400
 POINTS = 21
-DESIGN = il.Study.from_yaml(Path(__file__).parents[2] / "studies/sobol.yaml").design()
+STUDY = YAML(typ="safe").load(Path(__file__).parents[2] / "studies/sobol.yaml")
+DESIGN = il.Study(**STUDY | {"discretisation": None}).design()
 NAMES = list(DESIGN.attrs["varied"])
 DISTRIBUTIONS = [distribution_of(DESIGN[name].attrs) for name in NAMES]
 SOLVED = ["peak_force", "contact_duration", "maximum_indentation", "maximum_deflection"]
@@ -74,7 +76,7 @@ def main():
     """Print one row per response."""
     axes = np.full((len(NAMES), POINTS, len(NAMES)), 0.5)
     for i, distribution in enumerate(DISTRIBUTIONS):
-        values = np.linspace(distribution["low"], distribution["high"], POINTS)
+        values = np.linspace(*distribution.bounds().values(), POINTS)
         axes[i, :, i] = distribution.cumulative(values)
     unit = axes.reshape(-1, len(NAMES))
     exact = responses(inputs(unit))
