@@ -330,7 +330,7 @@ def _contacts(impact: il.Impact, run: Run) -> dict[str, float]:
     exit_velocity = -v_s[ends[-1]] if leaving else np.nan
     time_in_contact = crossing[ends].sum() - crossing[begins].sum()
     pauses = np.append(crossing[begins], np.inf)[: ends.size] / crossing[ends] - 1.0
-    lasting = ends[pauses >= 0.1]  # shorter ones are parts of the contact
+    lasting = ends[pauses >= 0.05]  # shorter ones are parts of the contact
     return {
         "contact_duration": crossing[lasting[0]] if lasting.size else np.nan,
         "number_of_contacts": 1.0 + begins.size,

@@ -35,7 +35,7 @@ STIFFNESS_RATIO_OUTSIDE_DATA = 64
 CONTACT_CIRCLE_OUTSIDE_DATA = 128
 
 
-SHORT_PAUSE = 0.1
+SHORT_PAUSE = 0.05
 """Pauses shorter than this share of the first contact until then do not end it."""
 
 
@@ -68,7 +68,7 @@ RESPONSES = (
         "s",
         "duration of the first contact",
         "first_contact_unfinished",
-        "until the first pause that is at least a tenth as long as the contact before it: whether "
+        "until the first pause that is at least a twentieth as long as the contact before: whether "
         "the surfaces part for a moment depends on a hair's breadth",
     ),
     Response("number_of_contacts", "1", "contacts begun within the duration"),

@@ -51,9 +51,9 @@ def contact(case):
 
 @pytest.mark.parametrize(
     ("pause", "duration"),
-    [(0.05, 2.05), (0.09, 2.09), (0.11, 1.0)],
+    [(0.02, 2.02), (0.04, 2.04), (0.06, 1.0)],
 )
-def test_a_pause_below_a_tenth_does_not_end_the_first_contact(pause, duration):
+def test_a_pause_below_a_twentieth_does_not_end_the_first_contact(pause, duration):
     """The surfaces part at 1, for the pause, then touch for 1; steps of 1e-3."""
 
     @compiled

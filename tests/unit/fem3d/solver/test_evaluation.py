@@ -17,10 +17,10 @@ def test_start_and_end_between_steps_and_short_pauses_do_not_count():
     np.testing.assert_allclose(found, [[0.0, 3.03], [6.1, 8.07]], atol=1e-9)
 
 
-def test_a_pause_below_a_tenth_does_not_end_the_first_contact():
-    assert first_duration(np.array([[0.0, 1.0], [1.05, 2.0], [2.3, 3.0]])) == 2.0
+def test_a_pause_below_a_twentieth_does_not_end_the_first_contact():
+    assert first_duration(np.array([[0.0, 1.0], [1.04, 2.0], [2.3, 3.0]])) == 2.0
     assert first_duration(np.array([[0.0, 1.0], [1.2, 2.0]])) == 1.0
-    assert np.isnan(first_duration(np.array([[0.0, 1.0], [1.05, np.nan]])))
+    assert np.isnan(first_duration(np.array([[0.0, 1.0], [1.04, np.nan]])))
 
 
 def test_a_contact_at_the_end_has_no_end():
