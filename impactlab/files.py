@@ -184,15 +184,25 @@ def _noted(values: Any, hashed: blake2b) -> Any:
     import dask.array as da  # takes long to load
     from dask.delayed import delayed
 
-    def note(block: Any, before: None) -> Any:
-        _update(hashed, block)
+    is_text = values.dtype.kind in "OUS"
+
+    def note(block: Any, before: None, is_last: bool) -> Any:
+        if is_text:  # as the one list of `_digest`
+            entries = json.dumps(block.tolist(), default=str)[1:-1]
+            hashed.update(f"{entries}{']' if is_last else ', '}".encode())
+        else:
+            _update(hashed, block)
         return block
+
+    if is_text:
+        hashed.update(b"[")
 
     blocks = values.rechunk({axis: -1 for axis in range(1, values.ndim)})
     shapes = [(rows, *values.shape[1:]) for rows in blocks.chunks[0]] if values.ndim else [()]
     parts, before = [], None
-    for shape, lazy in zip(shapes, blocks.to_delayed().ravel(), strict=True):
-        noted = delayed(note)(lazy, before)  # after the block before it
+    for number, lazy in enumerate(blocks.to_delayed().ravel(), 1):
+        shape = shapes[number - 1]
+        noted = delayed(note)(lazy, before, number == len(shapes))  # after the block before it
         before = delayed(lambda block: None)(noted)  # no block is kept for the next one
         parts.append(da.from_delayed(noted, shape, values.dtype))  # type: ignore[no-untyped-call]
     return da.concatenate(parts) if len(parts) > 1 else parts[0]  # type: ignore[no-untyped-call]

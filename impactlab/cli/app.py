@@ -22,6 +22,7 @@ _COMMANDS = {
     "recommend": "impactlab.cli.solve:recommend",
     "design": "impactlab.cli.solve:design",
     "run": "impactlab.cli.solve:run",
+    "merge": "impactlab.cli.solve:merge",
     "refine": "impactlab.cli.solve:refine",
     "status": "impactlab.cli.studies:status",
     "analyse": "impactlab.cli.results:analyse",

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import logging
 import os
+import re
+from dataclasses import replace as replaced
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -20,12 +22,23 @@ from impactlab.cli.options import (
     study_or_design,
 )
 
+if TYPE_CHECKING:
+    from impactlab.study.schema.declarations import AnyStudy
+
 Threads = Annotated[int, typer.Option(min=1, help="Threads.")]
 Force = Annotated[
     bool, typer.Option("--force", help="Run even if time or memory limits are exceeded.")
 ]
 Replace = Annotated[
     bool, typer.Option("--replace", help="Overwrite the results of another study of this name.")
+]
+StudyOrDesign = Annotated[
+    Path,
+    typer.Argument(
+        metavar="STUDY",
+        help="A study file, its design.nc, or results/NAME.",
+        callback=study_or_design,
+    ),
 ]
 _ALL = os.cpu_count() or 1
 
@@ -111,14 +124,7 @@ def design(
 
 
 def run(
-    design_file: Annotated[
-        Path,
-        typer.Argument(
-            metavar="STUDY",
-            help="A study file, its design.nc, or results/NAME.",
-            callback=study_or_design,
-        ),
-    ],
+    design_file: StudyOrDesign,
     output: Annotated[Path | None, new_file(".nc", help="Default: results/NAME/runs.nc.")] = None,
     workers: Annotated[int, typer.Option(min=1, help="Threads or processes.")] = _ALL,
     processes: Annotated[bool, typer.Option("--processes", help="Processes, not threads.")] = False,
@@ -133,14 +139,28 @@ def run(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Print the cost estimate and exit.")
     ] = False,
+    part: Annotated[
+        str, typer.Option(help="Solve this part alone, such as 3/40, for `impactlab merge`.")
+    ] = "",
+    to: Annotated[
+        str, typer.Option(help="Folder or URL of parts, as s3://... Default: results/NAME/parts.")
+    ] = "",
     force: Force = False,
     replace: Replace = False,
 ) -> None:
     """Solve the runs of a study that have not been solved yet.
 
-    Finished batches are kept in results/NAME/shards: an interrupted study resumes there.
+    Finished batches are kept in results/NAME/shards: an interrupted study resumes there. With
+    --part, each process solves a part by itself, needs no other, and resumes its own part.
     """
     stop_solving()
+    if part or to:
+        if not part or output or scheduler or cluster or processes or dry_run:
+            raise ValueError(
+                "--part: goes with --workers, --to, --force and --replace alone, and --to with it"
+            )
+        _run_part(design_file, _part(part), to, workers, force=force, replace=replace)
+        return
     from impactlab.files import read_netcdf
     from impactlab.report.console import print_estimate, print_recommendation, print_solved
     from impactlab.study import steps
@@ -164,6 +184,58 @@ def run(
     )
     options = {"force": force, "replace": replace}
     steps.run(study, path, engine, runs=stored, tell=print_recommendation, **options)
+    print_solved(path)
+
+
+def _part(text: str) -> tuple[int, int]:
+    """Return number and total of a part. Raises ValueError for any other text."""
+    match = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text)
+    number, total = map(int, match.groups()) if match else (0, 0)
+    if not 1 <= number <= total:
+        raise ValueError(f"--part = {text!r}: write NUMBER/PARTS, from 1/40 to 40/40 of 40 parts")
+    return number, total
+
+
+def _study_of(file: Path) -> AnyStudy:
+    """Return the study in its file or in a design, whose runs are not read."""
+    from impactlab.files import opened
+    from impactlab.study.design import study_of_design
+    from impactlab.study.schema.readers import read_study
+
+    if file.suffix != ".nc":
+        return read_study(file)
+    with opened(file, "design", indexed=False) as stored:
+        study = study_of_design(stored, file)
+        return replaced(study, path=file.parent / str(stored.attrs.get("study_file") or file.name))
+
+
+def _run_part(file: Path, part: tuple[int, int], place: str, workers: int, **options: bool) -> None:
+    from impactlab.report.console import print_recommendation
+    from impactlab.study import parts, steps
+
+    study = _study_of(file)
+    folder = steps.results_folder(study.name)
+    parts.run_part(study, folder, part, workers, place, tell=print_recommendation, **options)
+
+
+def merge(
+    design_file: StudyOrDesign,
+    output: Annotated[Path | None, new_file(".nc", help="Default: results/NAME/runs.nc.")] = None,
+    place: Annotated[
+        str, typer.Option("--from", help="Folder or URL of parts. Default: results/NAME/parts.")
+    ] = "",
+    replace: Replace = False,
+) -> None:
+    """Put the parts of a study together, which `impactlab run --part` has solved.
+
+    Names the parts that are missing or damaged; otherwise writes the runs.nc of one process.
+    """
+    from impactlab.report.console import print_solved
+    from impactlab.study import parts, steps
+
+    study = _study_of(design_file)
+    path = output or steps.results_folder(study.name) / "runs.nc"
+    parts.merge(study, path, place, replace=replace)
     print_solved(path)
 
 

@@ -39,7 +39,7 @@ from impactlab.solver import BEAM_MODELS
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.solver.types import CASE
 from impactlab.study.shard import Array, Columns
-from impactlab.study.solvers import flattened, kernels, run_shape
+from impactlab.study.solvers import flattened, kernels, run_number, run_shape
 from impactlab.study.store import OutputSpec
 from impactlab.variables import FAILURES, HISTORIES, RESPONSES, described
 
@@ -191,7 +191,8 @@ def cases(design: xr.Dataset, runs: Array) -> Array:
     """Return the table of these runs. Raises ValueError naming a run that the model refuses."""
     varied = {name: flattened(design, name, runs) for name in listed(design, "varied")}
     duration = design["duration"].item()
-    return table(*kernels.base(design), duration=duration, varied=varied, first_run=int(runs[0]))
+    first = run_number(design, runs[0])
+    return table(*kernels.base(design), duration=duration, varied=varied, first_run=first)
 
 
 def solve(cases: Array, form: OutputSpec) -> Columns:

@@ -161,24 +161,30 @@ class Fast(RandomSample):
         """The attributes of a design that describe its draws."""
         return super().settings | {"curves": self.curves, "frequency": self.frequency}
 
-    def draws(self) -> Floats:
+    def draws(self, start: int = 0, stop: int | None = None) -> Floats:
         """Draw the curves of one parameter after the other, last those of the dummy.
 
         Along a curve, the others have distinct frequencies up to 1/(2 M) of the parameter's own;
         frequencies and phases are drawn anew for each curve (Saltelli et al. 1999, eq. 20).
         """
         rng, size = np.random.default_rng(self.seed), len(self.varied)
-        angles = 2 * np.pi * np.arange(self.points)[:, None] / self.points
-        curves = np.empty((size + 1, _CURVES, self.points, size))
-        for parameter, curve in np.ndindex(curves.shape[:2]):
+        stop = self.runs if stop is None else stop
+        runs = np.empty((stop - start, size))
+        for curve in range(self.curves):
+            parameter, before = curve // _CURVES, curve * self.points
             frequencies = 1 + rng.choice(
                 self.frequency // (2 * self.harmonics), size, replace=False
             )
             if parameter < size:
                 frequencies[parameter] = self.frequency
-            waves = np.sin(frequencies * angles + rng.uniform(0, 2 * np.pi, size))
-            curves[parameter, curve] = 0.5 + np.arcsin(waves) / np.pi
-        return curves.reshape(-1, size)
+            phases = rng.uniform(0, 2 * np.pi, size)
+            first, last = max(start - before, 0), min(stop - before, self.points)
+            if first < last:
+                angles = 2 * np.pi * np.arange(first, last)[:, None] / self.points
+                waves = np.sin(frequencies * angles + phases)
+                rows = slice(before + first - start, before + last - start)
+                runs[rows] = 0.5 + np.arcsin(waves) / np.pi
+        return runs
 
     @staticmethod
     def near_runs(sample: Sample, length: int) -> int:

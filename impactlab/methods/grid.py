@@ -96,6 +96,13 @@ class Grid(Sampling):
         """Number of combinations."""
         return prod(len(values) for values in self.parameters.values())
 
+    def columns(self, start: int = 0, stop: int | None = None) -> dict[str, np.ndarray[Any, Any]]:
+        """Return the values of each parameter in runs start to stop, one per run."""
+        shape = [len(values) for values in self.parameters.values()]
+        places = np.unravel_index(np.arange(start, self.runs if stop is None else stop), shape)
+        columns = zip(self.parameters.items(), places, strict=True)
+        return {name: np.array(values)[indices] for (name, values), indices in columns}
+
     def bounds(self) -> dict[str, tuple[Value, ...]]:
         """Return the least and greatest value of each parameter, or all of its words."""
         return {

@@ -13,13 +13,15 @@ from typing import Annotated, Any, Self
 
 import numpy as np
 import scipy  # its stats are loaded when first used
+from numpy.typing import NDArray
 from pydantic import Field, PlainValidator, StrictStr, TypeAdapter, model_validator
 
-from impactlab.methods.sampling import MOST_RUNS, RandomSample
+from impactlab.methods.sampling import DRAWN_TOGETHER, MOST_RUNS, DrawnTogether
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown
 from impactlab.validation.fields import Number, Whole, at_key
 
+Places = NDArray[np.uint64]
 Correlations = Sequence[tuple[str, str, float]]
 """Two parameters and Spearman's rank correlation of them; pairs that are not listed have 0."""
 _LEAST = 1e-8  # smallest eigenvalue of a matrix that counts as positive definite
@@ -37,7 +39,7 @@ def _read_triples(data: Any) -> Correlations:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Hypercube(RandomSample):
+class Hypercube(DrawnTogether):
     """A Latin hypercube, the same one whatever indices are estimated from it.
 
     samples: number of runs. correlations: two varied numbers and their rank correlation (Spearman).
@@ -121,7 +123,28 @@ class Hypercube(RandomSample):
         reason = "no surrogate is fitted over correlated parameters: its terms assume independence"
         return reason if self.correlations else super().no_surrogate
 
-    def draws(self) -> Floats:
+    @property
+    def most_runs(self) -> int:
+        """The most runs that it draws: correlations order the values of all runs together."""
+        return DRAWN_TOGETHER if self.correlations else MOST_RUNS
+
+    def draws(self, start: int = 0, stop: int | None = None) -> Floats:
+        """Draw runs start to stop in the unit cube, on (run, varied parameter).
+
+        Beyond DRAWN_TOGETHER runs, the strata are those of a permutation by number, and memory
+        holds no other run; smaller samples keep the order that is shuffled as a whole.
+        """
+        if self.samples <= DRAWN_TOGETHER:
+            return super().draws(start, stop)
+        stop, size = self.samples if stop is None else stop, len(self.varied)
+        placed, *ordered = np.random.SeedSequence(self.seed).spawn(1 + size)
+        bits = np.random.PCG64(placed).advance(start * size)
+        inside = np.random.Generator(bits).random((stop - start, size))
+        runs = np.arange(start, stop, dtype=np.uint64)
+        strata = [permuted(runs, self.samples, _round_keys(stream)) for stream in ordered]
+        return np.asarray((np.stack(strata, axis=1) + inside) / self.samples)
+
+    def all_draws(self) -> Floats:
         """Draw one value in each of equal strata of every parameter, whatever the method.
 
         Correlations change the order of these values alone.
@@ -134,6 +157,35 @@ class Hypercube(RandomSample):
         if not self.correlations:
             return unit
         return correlated(unit, correlation_matrix(list(self.varied), self.correlations))
+
+
+def permuted(places: Places, size: int, keys: Places) -> Places:
+    """Return where a permutation of 0 to size - 1 takes these places, without the others.
+
+    keys: of the rounds of a balanced Feistel network over the next power of four, whose places
+    beyond `size` are permuted again until they fall inside: Black and Rogaway (2002), CT-RSA,
+    section 3 (recalled, not read).
+    """
+    half = np.uint64(((size - 1).bit_length() + 1) // 2)
+    mask = (np.uint64(1) << half) - np.uint64(1)
+    left, right = places >> half, places & mask
+    for key in keys:
+        left, right = right, left ^ (_mixed(right ^ key) & mask)
+    taken = (left << half) | right
+    if (outside := taken >= size).any():
+        taken[outside] = permuted(taken[outside], size, keys)
+    return taken
+
+
+def _round_keys(stream: np.random.SeedSequence) -> Places:
+    return np.asarray(stream.generate_state(6, np.uint64), np.uint64)
+
+
+def _mixed(words: Places) -> Places:
+    """Return 64-bit words that change in half of their bits with any bit: SplitMix64's end."""
+    for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
+        words = (words ^ (words >> np.uint64(shift))) * np.uint64(factor)
+    return words ^ (words >> np.uint64(31))
 
 
 def correlation_matrix(names: Sequence[str], correlations: Correlations) -> Floats:

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 
 from impactlab.methods.record import Family, IndexVariable, Indices, Measure
 from impactlab.methods.runs import Sample
-from impactlab.methods.sampling import Grouped
+from impactlab.methods.sampling import DrawnTogether, Grouped
 from impactlab.methods.verdict import SensitivityVerdict, wide
 from impactlab.types import Floats
 from impactlab.validation.fields import Whole, at_key, requires
@@ -131,7 +131,7 @@ INDICES = Indices(
 
 
 @dataclass(frozen=True, kw_only=True)
-class Morris(Grouped):
+class Morris(Grouped, DrawnTogether):
     """Trajectories for elementary effects: `trajectories` (D + 1) runs of D parameters.
 
     Parameters
@@ -183,7 +183,7 @@ class Morris(Grouped):
             raise at_key(f"parameters.{endless[0]}.distribution", reason)
         return self
 
-    def draws(self) -> Floats:
+    def all_draws(self) -> Floats:
         """Draw trajectories of levels, 0 and 1 included: a start, and one step per factor."""
         (rng,) = np.random.default_rng(self.seed).spawn(1)  # as in SALib: same bits
         groups = list(self.group_of.values())

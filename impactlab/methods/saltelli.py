@@ -10,6 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from threading import Lock
+from typing import Any
 
 import numpy as np
 import scipy  # its stats are loaded when first used
@@ -24,11 +27,19 @@ _ALONE = 5  # columns of the statistics that belong to no factor: a, b, a^2, b^2
 _ROWS = 1 << 15  # base samples whose statistics are held at a time
 
 
-def saltelli(groups: Sequence[str], base_samples: int, second_order: bool, seed: int) -> Floats:
+def saltelli(
+    groups: Sequence[str],
+    base_samples: int,
+    second_order: bool,
+    seed: int,
+    first: int = 0,
+    last: int | None = None,
+) -> Floats:
     """Draw Saltelli's sample in the unit cube, (runs, parameter), base sample by base sample.
 
-    groups: the group of each parameter. The runs of a base sample are the points A, A with the
-    columns of each group from B, with second_order B with the columns of each group from A, and B.
+    groups: the group of each parameter; first, last: the base samples to draw, by default all. The
+    runs of a base sample are the points A, A with the columns of each group from B, with
+    second_order B with the columns of each group from A, and B.
 
     A and B are the halves of the points of one Sobol sequence, whose dimensions may depend on each
     other four at a time (such as i and j of A and of B), so that the outputs at A and B correlate
@@ -39,18 +50,44 @@ def saltelli(groups: Sequence[str], base_samples: int, second_order: bool, seed:
     samples are the smaller sample.
     """
     count, dimensions = min(REPLICATES, base_samples), 2 * len(groups)
-    points = np.empty((base_samples, dimensions))
-    for place, stream in enumerate(np.random.SeedSequence(seed).spawn(count)):
-        rng = np.random.default_rng(stream)
-        order = rng.permutation(dimensions)
-        sequence = scipy.stats.qmc.Sobol(dimensions, rng=rng)
-        points[place::count] = sequence.random(base_samples // count)[:, order]
+    last = base_samples if last is None else last
+    points = np.empty((last - first, dimensions))
+    with _lock:
+        for place, (order, sequence) in enumerate(_sequences(dimensions, count, seed)):
+            start, stop = (-((place - base) // count) for base in (first, last))
+            rows = slice(start * count + place - first, None, count)
+            points[rows] = _points(sequence, start, stop)[:, order]
     names = list(dict.fromkeys(groups))
     swapped = np.array([[group == name for group in groups] for name in names])
     every_group = np.ones((1, len(groups)), bool)
     from_b = np.concatenate([~every_group, swapped, *[~swapped] * second_order, every_group])
     a, b = points[:, None, : len(groups)], points[:, None, len(groups) :]
     return np.where(from_b, b, a).reshape(-1, len(groups))
+
+
+_lock = Lock()
+
+
+@lru_cache(maxsize=1)  # the next block goes on where one ended
+def _sequences(dimensions: int, count: int, seed: int) -> list[tuple[Any, Any]]:
+    """Return the order of the dimensions and the scrambled sequence of each replicate."""
+    sequences = []
+    for stream in np.random.SeedSequence(seed).spawn(count):
+        rng = np.random.default_rng(stream)
+        order = rng.permutation(dimensions)
+        sequences.append((order, scipy.stats.qmc.Sobol(dimensions, rng=rng)))
+    return sequences
+
+
+def _points(sequence: Any, start: int, stop: int) -> Floats:
+    """Return points start to stop of a Sobol sequence, (points, dimension)."""
+    if start < sequence.num_generated:
+        sequence.reset()
+    if start > sequence.num_generated:
+        sequence.fast_forward(start - sequence.num_generated)
+    # a first point by itself: scipy warns of a first block that is no power of two
+    alone = min(stop, 1) if start == 0 else 0
+    return np.concatenate([sequence.random(alone), sequence.random(stop - start - alone)])
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import logging
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from functools import partial
+from functools import cached_property, partial
 from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
@@ -28,7 +29,11 @@ from impactlab.validation.errors import unknown
 from impactlab.validation.fields import LABEL, Names, Whole, at_key, by_name, name_at
 from impactlab.validation.stated import Stated
 
-MOST_RUNS = 10_000_000
+MOST_RUNS = 2_000_000_000
+DRAWN_TOGETHER = 10_000_000
+"""Most runs of a sample that is drawn as a whole, also where a block of it is asked for."""
+log = logging.getLogger(__name__)
+
 _EDGE = 2.0**-31
 """Half a step of scipy's 30-bit Sobol sequence: keeps draws off 0 and 1, where quantiles may be
 infinite."""
@@ -85,9 +90,21 @@ class Sampling(Stated):
         """The reason why no surrogate is fitted to the runs; "" where one is."""
         return "no surrogate is fitted over words, which have no order" if self.words else ""
 
+    @property
+    def most_runs(self) -> int:
+        """The most runs that it draws."""
+        return MOST_RUNS
+
     @abstractmethod
     def bounds(self) -> dict[str, tuple[Value, ...]]:
         """Return the least and greatest value of each bounded parameter, or all of its words."""
+
+    @abstractmethod
+    def columns(self, start: int = 0, stop: int | None = None) -> dict[str, np.ndarray[Any, Any]]:
+        """Return the values of each varied parameter in runs start to stop, in SI units, or words.
+
+        They are the same in any block of runs.
+        """
 
     @field_validator("parameters", mode="plain")
     @classmethod
@@ -104,8 +121,10 @@ class Sampling(Stated):
             count = " (fixed ones do not count)" if self.fixed else ""
             reason = f"too few: method {self.method} varies 1 or more{count}"
             raise at_key("parameters", reason)
-        if self.runs > MOST_RUNS:
-            raise ValueError(f"makes {self.runs:,} runs: reduce them to {MOST_RUNS:,} or fewer")
+        if self.runs > self.most_runs:
+            whole = ", for they are drawn together" if self.most_runs == DRAWN_TOGETHER else ""
+            most = f"{self.most_runs:,} or fewer{whole}"
+            raise ValueError(f"makes {self.runs:,} runs: reduce them to {most}")
         return self
 
 
@@ -219,14 +238,37 @@ class RandomSample(Sampling):
         return {}
 
     @abstractmethod
-    def draws(self) -> Floats:
-        """Draw in the unit cube, on (run, varied parameter)."""
+    def draws(self, start: int = 0, stop: int | None = None) -> Floats:
+        """Draw runs start to stop in the unit cube, on (run, varied parameter)."""
 
-    def columns(self) -> dict[str, np.ndarray[Any, Any]]:
+    def columns(self, start: int = 0, stop: int | None = None) -> dict[str, np.ndarray[Any, Any]]:
         """Draw one value per run of each varied parameter, in SI units, or one word."""
-        unit = np.clip(self.draws(), _EDGE, 1 - _EDGE).T
+        unit = np.clip(self.draws(start, stop), _EDGE, 1 - _EDGE).T
         columns = zip(self.varied.items(), unit, strict=True)
         return {name: entry.quantile(draws) for (name, entry), draws in columns}
+
+
+class DrawnTogether(RandomSample):
+    """A sample that is drawn as a whole; of blocks it is kept for the next one."""
+
+    @property
+    def most_runs(self) -> int:
+        """The most runs that it draws: memory holds them all."""
+        return DRAWN_TOGETHER
+
+    @abstractmethod
+    def all_draws(self) -> Floats:
+        """Draw all runs in the unit cube, on (run, varied parameter)."""
+
+    @cached_property
+    def _kept_draws(self) -> Floats:
+        log.info("method %s draws all %s runs at once", self.method, f"{self.runs:,}")
+        return self.all_draws()
+
+    def draws(self, start: int = 0, stop: int | None = None) -> Floats:
+        """Draw runs start to stop in the unit cube, on (run, varied parameter)."""
+        is_whole = start == 0 and stop in (None, self.runs)
+        return self.all_draws() if is_whole else self._kept_draws[start:stop]
 
 
 def _read_groups(data: Any) -> Mapping[str, tuple[str, ...]]:

@@ -243,10 +243,14 @@ class Sobol(Grouped):
         responses = {"until_responses": list(until.responses)} if until.responses else {}
         return settings | limits | responses
 
-    def draws(self) -> Floats:
+    def draws(self, start: int = 0, stop: int | None = None) -> Floats:
         """Draw base samples one after the other, see `saltelli`."""
+        size = self.runs // self.base_samples
+        stop = self.runs if stop is None else stop
+        first, last = start // size, -(-stop // size)
         groups = list(self.group_of.values())
-        return saltelli(groups, self.base_samples, self.pairs, self.seed)
+        runs = saltelli(groups, self.base_samples, self.pairs, self.seed, first, last)
+        return runs[start - first * size : stop - first * size]
 
     @staticmethod
     def independent(sample: Sample) -> NDArray[np.int64]:

@@ -2,6 +2,8 @@
 
 SHARDS, TRIALS, REFINEMENT = "shards", "trials", "refinement"
 """Folders beside a study's results: its own runs, pilot runs for `auto`, runs on finer grids."""
+PARTS = "parts"
+"""Folder beside a study's results: runs solved by parts (`impactlab run --part`)."""
 CALIBRATION = "calibration"
 """Folder beside a study's results: runs under other contact laws, and runs that confirm."""
 RESOLUTION = "resolution.nc"

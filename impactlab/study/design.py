@@ -25,13 +25,15 @@ from impactlab.variables import described
 from impactlab.verification.functions import FUNCTIONS
 
 
-def design(study: AnyStudy) -> xr.Dataset:
+def design(study: AnyStudy, start: int = 0, stop: int | None = None) -> xr.Dataset:
     """Return the runs of a study, as a Dataset of coordinates alone.
 
     A grid has one dimension per varied parameter; a sample has the dimension `run` with the varied
     parameters on it. Every other parameter, and the duration, is a scalar coordinate (sphere_mass
     where it is given); a parameter of a test function keeps the middle of its range. SI units. The
     attributes name the solver and the responses, describe the sample, and hold the study's text.
+
+    stop: with it, the runs from start to stop alone, also those of a grid on the dimension `run`.
 
     Raises StudyError for a study whose discretisation is still to be found
     (impactlab.study.adaptive.recommendation). What is drawn is checked before it is solved.
@@ -60,19 +62,21 @@ def design(study: AnyStudy) -> xr.Dataset:
     if study.python:
         settings |= {"solver": resolve_name("impactlab.study.solvers.own:solver_name")(study)}
     varied: dict[str, Any]
-    if isinstance(sampling, Grid):
+    if isinstance(sampling, Grid) and stop is None:
         varied = {name: (name, np.array(values)) for name, values in sampling.parameters.items()}
     else:
-        varied = {"run": xr.Variable("run", np.arange(sampling.runs), {"long_name": "run"})}
-        for name, values in sampling.columns().items():
-            varied[name] = "run", values, sampling.varied[name].arguments()
+        runs = np.arange(start, sampling.runs if stop is None else stop)
+        varied = {"run": xr.Variable("run", runs, {"long_name": "run"})}
+        for name, values in sampling.columns(start, stop).items():
+            entry = sampling.varied[name]
+            varied[name] = "run", values, {} if isinstance(entry, tuple) else entry.arguments()
     scalars = {name: ((), value) for name, value in fixed.items()}
-    runs = xr.Dataset(coords=scalars | varied, attrs=study.attributes() | settings)
+    dataset = xr.Dataset(coords=scalars | varied, attrs=study.attributes() | settings)
     if isinstance(study, ImpactStudy):
-        return described(runs)
+        return described(dataset)
     for name, attrs in study.labels.items():
-        runs[name].attrs = {**attrs, **runs[name].attrs, "function": study.function}
-    return runs
+        dataset[name].attrs = {**attrs, **dataset[name].attrs, "function": study.function}
+    return dataset
 
 
 def doubled(small: xr.Dataset) -> xr.Dataset:

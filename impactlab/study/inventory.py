@@ -60,15 +60,20 @@ class Work:
         solver = solver_named(name)
         keys, cost, runs = [], [], np.arange(math.prod(run_shape(design)[1]))
         for start in range(0, runs.size, _CHUNK):
-            try:
-                cases = solver.cases(design, runs[start : start + _CHUNK])
-            except ValueError as error:
-                advice = f": {BOUND_IT}" if "run" in design.dims else ""  # drawn
-                raise ValueError(f"{error}{advice}") from None
+            cases = checked_cases(design, solver, runs[start : start + _CHUNK])
             keys.append(run_keys(cases, output, solver.version))
             cost.append(solver.cost(cases))
         columns = np.concatenate(keys), np.concatenate(cost)
         return Work(design, name, solver, output, *columns, solver.values(cases, output))
+
+
+def checked_cases(design: xr.Dataset, solver: Solver, runs: Array) -> Array:
+    """Return the solver's cases of these runs. Raises ValueError naming one that it refuses."""
+    try:
+        return solver.cases(design, runs)
+    except ValueError as error:
+        advice = f": {BOUND_IT}" if "run" in design.dims else ""  # drawn
+        raise ValueError(f"{error}{advice}") from None
 
 
 _OPEN = 100  # shards that stay open: opening one takes longer than reading a column
@@ -84,7 +89,7 @@ def open_answers(
     Each is read when it is computed: one number per run as one block, histories and profiles in
     blocks of runs. Raises OSError where a run has no answer, or a shard is damaged.
     """
-    paths = shard_files(shards.folder)
+    paths = shards.files()
     shard_of, row_of = np.full(index.size, -1), np.zeros(index.size, dtype=int)
     pool: dict[Path, Shard] = {}
     with ExitStack() as stack:
@@ -182,7 +187,7 @@ def status(design: xr.Dataset, shards_folder: Path) -> Status:
         index.done[runs] = True
         bits[runs] = columns["status"][requested]
     failures = work.solver.failures(design)
-    times = [stat.st_mtime for stat in file_stats(shard_files(shards.folder))]
+    times = [stat.st_mtime for stat in file_stats(shards.files())]
     return Status(
         runs=index.size,
         done=int(np.count_nonzero(index.spread(index.done))),

@@ -10,8 +10,8 @@ import struct
 import zlib
 from hashlib import sha256
 from io import BytesIO
-from pathlib import Path
-from typing import Any
+from pathlib import Path, PurePath
+from typing import IO, Any
 from zipfile import BadZipFile, ZipFile
 
 import numpy as np
@@ -42,12 +42,18 @@ LAYOUT = 3
 
 def write_shard(path: Path, keys: Array, columns: Columns) -> None:
     """Write a shard. Raises OSError as `files.replaced`."""
+    size = keys.nbytes + sum(values.nbytes for values in columns.values())
+    with replaced(path, size) as unfinished, unfinished.open("wb") as file:
+        pack_shard(file, path, keys, columns)
+
+
+def pack_shard(file: IO[bytes], path: PurePath, keys: Array, columns: Columns) -> None:
+    """Write the content of a shard to an open file; path: the place where it is going to be."""
     arrays = {KEYS: keys} | columns
-    size = sum(values.nbytes for values in arrays.values())
-    with replaced(path, size) as unfinished, ZipFile(unfinished, "w") as file:
-        file.comment = _digest(path, tuple(arrays))
+    with ZipFile(file, "w") as archive:
+        archive.comment = _digest(path, tuple(arrays))
         for name, values in arrays.items():
-            with file.open(f"{name}.npy", "w", force_zip64=True) as column:
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as column:
                 np.lib.format.write_array(column, values, allow_pickle=False)
 
 
@@ -57,9 +63,12 @@ class Shard:
     names: of its columns. Every method raises one of DAMAGE where the file is no sound shard.
     """
 
-    def __init__(self, path: Path) -> None:
-        """Open the file. Missing columns, and another place, are noticed here."""
-        self._file = ZipFile(path)
+    def __init__(self, path: PurePath, file: IO[bytes] | None = None) -> None:
+        """Open the file. Missing columns, and another place, are noticed here.
+
+        file: the content of `path`, open for reading, where that is no file of this machine.
+        """
+        self._file = ZipFile(file or str(path))
         self.names = tuple(name.removesuffix(".npy") for name in self._file.namelist())
         if self._file.comment != _digest(path, self.names):
             raise ValueError("it lacks a column, or was written to another place")
@@ -75,5 +84,5 @@ class Shard:
         return values
 
 
-def _digest(path: Path, names: tuple[str, ...]) -> bytes:
+def _digest(path: PurePath, names: tuple[str, ...]) -> bytes:
     return sha256(f"{path.parent.name}/{path.name} {names}".encode()).digest()

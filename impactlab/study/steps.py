@@ -123,25 +123,40 @@ def run(
     `solve`; ValueError as `check_unclaimed`.
     """
     from impactlab.study.design import design
-    from impactlab.study.estimate import estimate
-    from impactlab.study.schema.measurement_files import read_measurements
 
     source = study_file(study, path.parent)
     if runs is not None and (file := runs.attrs.get("study_file")):
         source = study_file(changed(study, path=study.path.parent / file), path.parent)
     if not replace:
         check_unclaimed(study, path, source)
-    for file in study.measurements if isinstance(study, ImpactStudy) else ():
-        read_measurements(file)  # mistakes there are told before hours of runs
-    declared = resolved(study, path.parent, tell=tell)
-    cost = estimate(declared or study, path.parent, engine.workers)
-    for problem in cost.implausible:
-        log.warning("%s", problem)
-    if (exceeded := cost.exceeded()) and not force:
-        raise StudyError(*exceeded)
+    declared = priced(study, path.parent, engine.workers, force, tell)
     if runs is None:
         runs = design(declared or resolved(study, path.parent, engine, tell) or study)
     solve(runs.assign_attrs(study_file=source), path, engine)
+
+
+def priced(
+    study: AnyStudy, folder: Path, workers: int, force: bool, tell: Tell, parts: int = 0
+) -> AnyStudy | None:
+    """Return the study as `resolved` does without an engine, after checks of what it costs.
+
+    parts: of which one is solved, in flat memory; 0: all runs are. Raises StudyError where a limit
+    is exceeded, and for wrong measurements.
+    """
+    from impactlab.study.estimate import estimate
+    from impactlab.study.schema.measurement_files import read_measurements
+
+    for file in study.measurements if isinstance(study, ImpactStudy) else ():
+        read_measurements(file)  # mistakes there are told before hours of runs
+    declared = resolved(study, folder, tell=tell)
+    cost = estimate(declared or study, folder, workers)
+    for problem in cost.implausible:
+        log.warning("%s", problem)
+    if parts:
+        cost = changed(cost, seconds=cost.seconds / parts, memory=0.0, disk=cost.disk / parts)
+    if (exceeded := cost.exceeded()) and not force:
+        raise StudyError(*exceeded)
+    return declared
 
 
 def solve(samples: xr.Dataset, path: Path, engine: Engine) -> None:

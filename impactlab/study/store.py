@@ -25,6 +25,7 @@ import xarray as xr
 from filelock import FileLock, Timeout
 
 from impactlab.files import unfinished_files
+from impactlab.study import PARTS, SHARDS
 from impactlab.study.shard import DAMAGE, KEY, KEYS, LAYOUT, Array, Columns, Shard, write_shard
 
 log = logging.getLogger(__name__)
@@ -69,7 +70,13 @@ class Shards:
         """Look in `folder`/<hash of solver version, output and layout>, made by a first write."""
         form = f"{version} {output} {LAYOUT}"
         self.folder = folder / hashlib.sha256(form.encode()).hexdigest()[:16]
+        self._parts = folder.with_name(PARTS) if folder.name == SHARDS else None
         self._small: dict[Path, tuple[Array, Columns]] = {}  # kept in memory until merged
+
+    def files(self) -> list[Path]:
+        """Return all shards, and the blocks that parts of the study have solved beside them."""
+        blocks = sorted(self._parts.glob("*/*-of-*.npz")) if self._parts else []
+        return shard_files(self.folder) + blocks
 
     def read(self, *names: str) -> Iterator[tuple[Array, Columns]]:
         """Yield keys and answers of every sound shard; the log names damaged ones.
@@ -78,7 +85,7 @@ class Shards:
         shards, runs may come twice, but none is left out.
         """
         seen: set[Path] = set()
-        while fresh := [path for path in shard_files(self.folder) if path not in seen]:
+        while fresh := [path for path in self.files() if path not in seen]:
             seen.update(fresh)
             for path in fresh:
                 if runs := sound_runs(path, *names):
@@ -88,15 +95,16 @@ class Shards:
         """Yield the keys of every sound shard, and tidy up; only for the process that writes here.
 
         Every shard is checked whole. A damaged one is renamed, for a person to look at; unfinished
-        files are removed.
+        files are removed. Blocks of parts stay as they are: others may write there.
         """
         for unfinished in unfinished_files(self.folder):
             unfinished.unlink()
-        for path in shard_files(self.folder):
+        for path in self.files():
             if not (runs := sound_runs(path)):
-                path.replace(path.with_name(path.name + DAMAGED))
+                if path.parent == self.folder:
+                    path.replace(path.with_name(path.name + DAMAGED))
                 continue
-            if _size(*runs) < _SMALL:
+            if _size(*runs) < _SMALL and path.parent == self.folder:
                 self._small[path] = runs
             yield runs[0]
 

@@ -36,6 +36,11 @@ def flattened(design: xr.Dataset, name: str, runs: Array) -> Array:
     return values
 
 
+def run_number(design: xr.Dataset, run: int) -> int:
+    """Return the number that messages give a run; a block of a design begins later than at 0."""
+    return int(design["run"].values[run]) if "run" in design.dims else int(run)
+
+
 def on_design(
     design: xr.Dataset, answers: Mapping[str, Any], attrs: Mapping[str, Mapping[str, Any]]
 ) -> xr.Dataset:

@@ -17,7 +17,7 @@ from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.simulate import compile_kernels, profile_coordinates, solve
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.shard import Array
-from impactlab.study.solvers import Solver, flattened, run_shape
+from impactlab.study.solvers import Solver, flattened, run_number, run_shape
 from impactlab.study.store import OutputSpec
 from impactlab.variables import (
     HISTORIES,
@@ -44,7 +44,8 @@ def cases(design: xr.Dataset, runs: Array) -> Array:
     """Return the kernels' case table of these runs. Raises ValueError naming one it refuses."""
     varied = {name: flattened(design, name, runs) for name in listed(design, "varied")}
     duration = design["duration"].item()
-    return case_table(*base(design), duration=duration, varied=varied, first_run=int(runs[0]))
+    first = run_number(design, runs[0])
+    return case_table(*base(design), duration=duration, varied=varied, first_run=first)
 
 
 def values(cases: Array, output: OutputSpec) -> int:

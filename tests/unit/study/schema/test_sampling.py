@@ -152,7 +152,7 @@ WRONG_UNTIL = [
     ({"interval": 0.0009}, "interval", "must be at least 0.001"),
     ({"interval": 0.6}, "interval", "must be at most 0.5"),
     ({"runs": 511}, "runs", "must be at least the first sample's 512 runs"),
-    ({"runs": 10_000_001}, "runs", "must be at most 10,000,000"),
+    ({"runs": 2_000_000_001}, "runs", "must be at most 2,000,000,000"),
     ({"responses": []}, "responses", "list at least one"),
     ({"responses": ["peak_forse"]}, "responses.0", "did you mean 'peak_force'?"),
     ({"intervall": 0.1}, "intervall", "did you mean 'interval'?"),
