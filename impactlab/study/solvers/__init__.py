@@ -38,7 +38,7 @@ def flattened(design: xr.Dataset, name: str, runs: Array) -> Array:
 
 def run_number(design: xr.Dataset, run: int) -> int:
     """Return the number that messages give a run; a block of a design begins later than at 0."""
-    return int(design["run"].values[run]) if "run" in design.dims else int(run)
+    return int(design["run"].values[run]) if run_shape(design)[0] == ("run",) else int(run)
 
 
 def on_design(
