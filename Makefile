@@ -1,4 +1,4 @@
-# make study   the main studies, from their files to results/index.html (5 minutes on two cores)
+# make study   the main studies, from their files to results/index.html (3 minutes on two cores)
 # make paper   the figures and statements of the paper, in results/paper (about 20 minutes on two idle
 #              cores, 35 of processor time, nearly all of it for the 3-D model)
 # make all     every study, the large ones too, and the paper (one to two hours)
@@ -49,7 +49,9 @@ STOPPED := echo; echo 'Not finished, or a check failed: see the messages above a
   echo 'What is done is kept: the same command goes on from there (`make unlock` first, if it says locked).'; \
   exit 1
 
+# All kernels at once: they share what they have in common, and checks need them all.
 study: $(MADE)-workflow
+	@$(IN_VENV) impactlab compile
 	@$(SNAKEMAKE) --quiet all --config studies='$(STUDIES)' || { $(STOPPED); }
 	@echo; echo 'Done. Open results/index.html'
 

@@ -1,10 +1,10 @@
 """Functions compiled by numba: free of the GIL, kept in a folder of their sources' own.
 
-A kernel is compiled by a process of its own (`precompile`), which leaves it in the cache. A process
-that compiles it runs other machine code than one that loads it: of the copies of an inner function
-it links another one, whose sums may be ordered differently, and answers may differ in the last
-bit. So all processes load it. (One that has compiled an inner function itself, as tests do, still
-links that.)
+Kernels are compiled by processes of their own (`precompile`), which leave them in the cache. A
+process that compiles one runs other machine code than one that loads it: of the copies of an inner
+function it links another one, whose sums may be ordered differently, and answers may differ in the
+last bit. So all processes load it. (One that has compiled an inner function itself, as tests do,
+still links that.)
 
 numba's own cache notices a changed function, but neither a changed callee in another file nor a
 damaged file, and looks for code by the path and age of its source. Here a folder belongs to one set
@@ -19,7 +19,6 @@ in a second copy (`over_fibres` in solver/jit.py) is then inlined.
 
 from __future__ import annotations
 
-import functools
 import hashlib
 import logging
 import os
@@ -30,7 +29,9 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from operator import attrgetter
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -58,7 +59,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 log = logging.getLogger(__name__)
 
 _COMPILES = "IMPACTLAB_COMPILES"
-"""Environment variable of a process that compiles one kernel, for others to load: its name."""
+"""Environment variable of a process that compiles kernels, for others to load: their names."""
 _PRIVATE = (
     "core.codegen.CPUCodeLibrary._finalize_final_module",
     "core.codegen.CPUCodeLibrary.has_dynamic_globals",
@@ -167,6 +168,10 @@ class KernelCache:
         rebuild: Any = numba.core.compiler.CompileResult._rebuild
         return rebuild(target_context, *pickle.loads(payload))
 
+    def has_any(self) -> bool:
+        """Return whether there is a compiled form, and it is sound."""
+        return any(_read(path) for path in self.folder.glob(self.files.format("*")))
+
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep a compiled form that holds no addresses of this process: all of it or nothing."""
         if data.library.has_dynamic_globals or data.lifted:
@@ -255,9 +260,9 @@ class Compiler:
 
         def compiled(function: Function) -> Function:
             name = f"{function.__module__}.{function.__qualname__}"
-            # In a process that compiles one kernel, Python can call that alone, which alone is
+            # In a process that compiles kernels, Python can call these alone, which alone are
             # kept: what makes the others ready for Python would take half of the time.
-            called = from_python or os.environ.get(_COMPILES, name) == name
+            called = from_python or name in os.environ.get(_COMPILES, name).split()
             if called:
                 _CALLED.add(function.__qualname__)
             private = {
@@ -318,31 +323,54 @@ def _announce(folder: Path) -> None:
         print("impactlab: compiling kernels, once, about 15 s each", file=sys.stderr, flush=True)
 
 
-@functools.cache
-def precompile(kernel: Any, program: str) -> None:
-    """Compile `kernel` in another process, unless it is in the cache.
+_SOUGHT: set[Any] = set()
+"""Kernels that this process has looked for in the cache."""
 
-    kernel: a compiled function. program: Python code that calls it. Where the kernel has no cache,
-    or no other process can be started, the calling process will compile. Processes that need it at
-    the same time wait for the first one's.
+
+def precompile(programs: Mapping[Any, str]) -> None:
+    """Compile kernels in other processes, one per processor, unless they are in the cache.
+
+    programs: Python code that calls it, by compiled function. Kernels that one process compiles
+    share what they have in common. Where a kernel has no cache, or no other process can be started,
+    the calling process will compile. Processes that need one at the same time wait for the first
+    one's.
     """
-    cache = getattr(kernel, "_cache", None)
-    if not isinstance(cache, KernelCache) or _COMPILES in os.environ or not sys.executable:
-        return
+    sought = {kernel: program for kernel, program in programs.items() if kernel not in _SOUGHT}
+    if sought and _COMPILES not in os.environ and sys.executable:
+        caches = {getattr(kernel, "_cache", None): program for kernel, program in sought.items()}
+        missing = [
+            (cache, program)
+            for cache, program in caches.items()
+            if isinstance(cache, KernelCache) and not cache.has_any()
+        ]
+        count = min(len(missing), os.cpu_count() or 1)
+        with ThreadPoolExecutor(max(count, 1)) as pool:
+            list(pool.map(_compile_elsewhere, (missing[start::count] for start in range(count))))
+    _SOUGHT.update(sought)
+
+
+def _compile_elsewhere(kernels: Sequence[tuple[KernelCache, str]]) -> None:
+    """Compile kernels in one other process, those that nobody else leaves in the cache."""
     root = str(Path(__file__).resolve().parents[1])  # the same package, wherever it was found
     paths = os.pathsep.join(filter(None, [root, os.environ.get("PYTHONPATH")]))
     try:
-        with FileLock(cache.folder / f"{cache.name}.lock"):
-            if any(_read(path) for path in cache.folder.glob(cache.files.format("*"))):
+        with ExitStack() as locks:
+            # in one order, so that no two processes wait for each other
+            for cache, _ in sorted(kernels, key=lambda kernel: kernel[0].name):
+                locks.enter_context(FileLock(cache.folder / f"{cache.name}.lock"))
+            missing = {cache: program for cache, program in kernels if not cache.has_any()}
+            if not missing:
                 return
-            _announce(cache.folder)
+            _announce(kernels[0][0].folder)
+            names = " ".join(cache.name for cache in missing)
+            program = "\n".join(["import gc; gc.disable()", *missing.values()])  # 5 % of the time
             done = subprocess.run(
-                [sys.executable, "-c", f"import gc; gc.disable()\n{program}"],  # 5 % of the time
-                env=os.environ | {_COMPILES: cache.name, "PYTHONPATH": paths},
+                [sys.executable, "-c", program],
+                env=os.environ | {_COMPILES: names, "PYTHONPATH": paths},
                 capture_output=True,
                 text=True,
                 check=False,
             )
-        log.debug("kernels precompiled, exit code %s: %s", done.returncode, done.stderr)
+        log.debug("%s precompiled, exit code %s: %s", names, done.returncode, done.stderr)
     except OSError as error:
         log.debug("kernels cannot be precompiled: %s", error)

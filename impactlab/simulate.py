@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -358,9 +357,9 @@ def solve(
 def compile_kernels(
     beam_models: Iterable[str] = BEAM_MODELS,
     schemes: Iterable[str] = SCHEMES,
-    extended: Iterable[bool] = (False,),
+    extended: Iterable[bool] = (False, True),
 ) -> Path | None:
-    """Compile the kernels of these models and schemes side by side, unless they are compiled.
+    """Compile the kernels of these models and schemes, unless they are compiled.
 
     extended: whether those with what kernels.is_extended names, those without, or both. Returns
     the folder of the compiled kernels, None where they cannot be kept.
@@ -371,11 +370,7 @@ def compile_kernels(
             kernel = kernel_of(BEAM_MODELS.index(model), SCHEMES.index(scheme), more)
             law = "hunt_crossley" if more else "hertz"
             programs[kernel] = _COMPILE.format(model=model, scheme=scheme, law=law)
-    if len(programs) == 1:
-        precompile(*programs.popitem())
-    else:
-        with ThreadPoolExecutor() as pool:
-            list(pool.map(precompile, programs, programs.values()))
+    precompile(programs)
     return FOLDER
 
 

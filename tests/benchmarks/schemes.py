@@ -220,7 +220,7 @@ def main() -> int:
     parser.add_argument("--output", type=Path, default=ROOT / "results" / "benchmark_schemes.csv")
     parser.add_argument("--figure", type=Path, default=ROOT / "docs" / "schemes.png")
     options = parser.parse_args()
-    compile_kernels()
+    compile_kernels(extended=[False])
     each = {velocity: of_velocity(velocity, options.rounds) for velocity in VELOCITIES}
     found = pd.concat({velocity: rows for velocity, (rows, _) in each.items()}, names=["velocity"])
     doubts = {velocity: doubt for velocity, (_, doubt) in each.items()}

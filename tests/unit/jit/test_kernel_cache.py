@@ -28,6 +28,15 @@ CALL = """
 from few_kernels.triple import triple
 print(triple(2.0), len(triple.stats.cache_hits))
 """
+
+
+class Kernel:
+    """A compiled function, of which only the cache is needed."""
+
+    def __init__(self, cache):
+        self._cache = cache
+
+
 Start = Callable[..., "subprocess.Popen[str]"]
 
 
@@ -196,6 +205,26 @@ def test_every_process_runs_the_same_machine_code(tmp_path):
     assert str(file.parent) in errors
     out.append(again.split())
     assert out == [[out[0][0], "1"]] * 4
+
+
+def test_kernels_of_one_call_are_compiled_together(tmp_path, monkeypatch):
+    """One process per processor, none for what is in the cache, and none the second time."""
+    caches = [impactlab.jit.KernelCache(tmp_path, f"kernel_{number}") for number in range(5)]
+    content = b"compiled"
+    (tmp_path / "kernel_0-abc.kernel").write_bytes(hashlib.sha256(content).digest() + content)
+    programs = {Kernel(cache): f"call({cache.name})" for cache in caches}
+    started = []
+
+    def run(command, env, **options):
+        started.append((env["IMPACTLAB_COMPILES"].split(), command[-1].splitlines()[1:]))
+        return subprocess.CompletedProcess(command, 0, stderr="")
+
+    monkeypatch.setattr(subprocess, "run", run)
+    monkeypatch.setattr(os, "cpu_count", lambda: 2)
+    impactlab.jit.precompile(programs)
+    impactlab.jit.precompile(programs)
+    names = [["kernel_1", "kernel_3"], ["kernel_2", "kernel_4"]]
+    assert sorted(started) == [(group, [f"call({name})" for name in group]) for group in names]
 
 
 def test_compiling_is_announced_once_by_all_processes(tmp_path, capsys, monkeypatch):
