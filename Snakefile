@@ -1,5 +1,5 @@
-# studies/NAME.yaml -> design.nc -> runs.nc -> analysis.nc -> figures/ -> report.html, and one index.
-# A study of checks: studies/NAME.yaml -> findings.nc -> figures/ -> report.html, then the verdict.
+# studies/NAME.yaml -> design.nc, runs.nc -> analysis.nc, figures/, report.html, and one index.
+# A study of checks: studies/NAME.yaml -> findings.nc -> figures/, report.html, then the verdict.
 # Every study: snakemake --cores all. Some: snakemake --cores all --config studies=smoke,sobol
 # The source paper's figures and statements: snakemake --cores all paper
 

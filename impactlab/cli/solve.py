@@ -23,7 +23,7 @@ from impactlab.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from impactlab.study.schema.declarations import AnyStudy
+    from impactlab.study.schema.declarations import AnyStudy, Verification
 
 Threads = Annotated[int, typer.Option(min=1, help="Threads.")]
 Force = Annotated[
@@ -99,6 +99,7 @@ def recommend(
 def design(
     study: StudyFile,
     output: Annotated[Path | None, new_file(".nc", help="Default: results/NAME/design.nc.")] = None,
+    workers: Threads = _ALL,
 ) -> None:
     """Sample a study into its runs.
 
@@ -116,7 +117,7 @@ def design(
     path = output or steps.results_folder(declared.name) / "design.nc"
     stop_solving()
     check_unclaimed(declared, path.with_name("runs.nc"))
-    engine = Engine(workers=_ALL)
+    engine = Engine(workers=workers)
     resolved = steps.resolved(declared, path.parent, engine, print_recommendation)
     dataset = design_of(resolved or declared)
     file = study_file(declared, path.parent)
@@ -347,35 +348,78 @@ def verify(
 
 
 def go(
-    study: StudyFile, workers: Threads = _ALL, force: Force = False, replace: Replace = False
+    study: StudyFile,
+    workers: Threads = _ALL,
+    force: Force = False,
+    replace: Replace = False,
+    only: Annotated[
+        str,
+        typer.Option(
+            help="'solve': up to runs.nc, refinement.nc or findings.nc. 'report': from there on."
+        ),
+    ] = "",
 ) -> None:
     """Run, analyse, draw, report and index one study.
 
-    For a verification: verify, figures, report and index. Solved runs are not solved again.
+    For a verification: verify, figures, report and index. Solved runs are not solved again. --only
+    does one half of it, for workflows, and no index: `solve` leaves design.nc, and of a sample
+    resolution.nc, too.
     """
     from impactlab.cli import results
+    from impactlab.study import steps
+    from impactlab.study.schema.declarations import Verification
+    from impactlab.study.schema.readers import read_any
+
+    if only not in ("", "solve", "report"):
+        raise ValueError(f"--only = {only!r}: must be 'solve' or 'report'")
+    declared = read_any(study)
+    folder = steps.results_folder(declared.name)
+    names = ["runs.nc", "analysis.nc"]
+    if isinstance(declared, Verification):
+        names = ["findings.nc"]
+    stored = [folder / name for name in names]
+    failed = False
+    if only != "report":
+        try:
+            _solve(study, declared, bool(only), workers=workers, force=force, replace=replace)
+        except typer.Exit:  # the report comes first, the verdict last
+            failed = True
+    if only != "solve":
+        if not isinstance(declared, Verification):
+            results.analyse(stored[0], **steps.evidence(declared, stored[0]))
+        results.figures(stored)
+        results.report(stored)
+    if not only:
+        results.index()
+    if failed:
+        raise typer.Exit(code=1)
+
+
+def _solve(
+    study: Path,
+    declared: AnyStudy | Verification,
+    stepwise: bool,
+    *,
+    workers: int,
+    force: bool,
+    replace: bool,
+) -> None:
+    """Verify, or solve what a report is made from; stepwise: keep the file of each step."""
+    from impactlab.methods.sampling import RandomSample
     from impactlab.methods.sobol import Sobol
     from impactlab.study import steps
     from impactlab.study.schema.declarations import ImpactStudy, Verification
-    from impactlab.study.schema.readers import read_any
 
-    declared = read_any(study)
-    failed = False
     if isinstance(declared, Verification):
-        stored = [steps.results_folder(declared.name) / "findings.nc"]
-        try:
-            verify(study, replace=replace)
-        except typer.Exit:  # the report comes first, the verdict last
-            failed = True
-    else:
-        folder = steps.results_folder(declared.name)
-        stored = [folder / "runs.nc", folder / "analysis.nc"]
-        run(study, workers=workers, force=force, replace=replace)
-        if isinstance(declared, ImpactStudy) and isinstance(declared.sampling, Sobol):
-            refine(stored[0], workers=workers)
-        results.analyse(stored[0], **steps.evidence(declared, stored[0]))
-    results.figures(stored)
-    results.report(stored)
-    results.index()
-    if failed:
-        raise typer.Exit(code=1)
+        verify(study, replace=replace)
+        return
+    folder = steps.results_folder(declared.name)
+    sampling = declared.sampling if isinstance(declared, ImpactStudy) else None
+    if stepwise:
+        if isinstance(sampling, RandomSample):
+            recommend(study, workers=workers)
+        design(study, workers=workers)
+    source = folder / "design.nc" if stepwise else study
+    run(source, workers=workers, force=force, replace=replace)
+    if isinstance(sampling, Sobol):
+        refine(folder / "runs.nc", workers=workers)

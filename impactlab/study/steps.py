@@ -271,12 +271,16 @@ def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = No
 def evidence(study: AnyStudy, runs: Path) -> dict[str, Path]:
     """Return the files beside solved runs on their numerical uncertainty, for `analyse_runs`.
 
-    They hold what pilot runs of `auto` found, and `refine` of these very runs.
+    They hold what pilot runs of `auto`, or `recommend` of this very study, found, and `refine` of
+    these very runs.
     """
     evidence = {}
     resolution, refinement = runs.with_name(RESOLUTION), runs.with_name(f"{REFINEMENT}.nc")
-    if isinstance(study, ImpactStudy) and study.auto:
-        evidence = {"resolution": resolution} if resolution.exists() else {}
+    if isinstance(study, ImpactStudy) and resolution.exists():
+        with opened(resolution, "resolution") as recommendations:
+            made_for = recommendations.attrs.get("study_sha256")
+        if study.auto or made_for == study.sha256:
+            evidence["resolution"] = resolution
     if refinement.exists():
         with opened(refinement, "refinement") as refined, opened(runs, "runs") as solved:
             if identity(solved) in refined.attrs["made_from"].split():

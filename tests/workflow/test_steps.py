@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -83,6 +84,26 @@ def test_one_command_takes_the_evidence_that_the_workflow_takes(folder):
         assert getattr(grid, name) == runs[name].item(), name
 
 
+def test_the_workflow_does_one_command_in_two_halves(folder):
+    """With the same runs and analysis, and the file of each step of a sample."""
+    (folder / "studies" / "sample.yaml").write_text(SAMPLE)
+    results = folder / "results" / "sample"
+    impactlab("go", "studies/sample.yaml", cwd=folder)
+    names = ("runs.nc", "refinement.nc")
+    whole = [xr.load_dataset(results / name) for name in names]
+    shutil.rmtree(results)
+    impactlab("go", "studies/sample.yaml", "--only", "solve", cwd=folder)
+    made = {path.name for path in results.glob("*.*")}
+    assert made == {"resolution.nc", "design.nc", *names}
+    for name, dataset in zip(names, whole, strict=True):
+        xr.testing.assert_equal(xr.load_dataset(results / name), dataset)
+    impactlab("go", "studies/sample.yaml", "--only", "report", cwd=folder)
+    assert "numerical_uncertainty" in xr.load_dataset(results / "analysis.nc")
+    assert (results / "report.html").exists()
+    refused = called("go", "studies/sample.yaml", "--only", "all", cwd=folder).stderr
+    assert "--only = 'all': must be 'solve' or 'report'" in refused
+
+
 def test_one_command_reports_a_verification_before_it_fails(folder, monkeypatch):
     monkeypatch.setattr(steps, "failure", lambda outcomes: "half_space: broken")
     told = called("go", "studies/checks.yaml", cwd=folder)
@@ -95,7 +116,7 @@ def test_kernels_are_compiled_on_demand(tmp_path):
     told = impactlab("compile", "--wings", cwd=tmp_path).stdout.splitlines()
     folders = [Path(line.removeprefix("Compiled kernels: ")) for line in told]
     kept = [path.name for folder in folders for path in folder.glob("*.kernel")]
-    kernels = ("euler_bernoulli", "timoshenko", "lumped", "modal", "close_gaps")
+    kernels = ("euler_bernoulli", "timoshenko", "lumped", "modal", "extended_modal", "close_gaps")
     assert all(any(f".{kernel}-" in name for name in kept) for kernel in kernels)
 
 

@@ -21,7 +21,8 @@ class StepLines(logging.Handler):
         event, now = getattr(record, "event", None), time.monotonic()
         if event == LogEvent.RUN_INFO:
             counts = {rule: n for rule, n in record.stats.items() if rule not in ("all", "total")}
-            self.total, self.pace = sum(counts.values()), Pace(counts, recorded_seconds(), now)
+            cores = workflow.resource_settings.cores or os.cpu_count()
+            self.total, self.pace = sum(counts.values()), Pace(counts, recorded_seconds(), cores)
         elif event == LogEvent.JOB_FINISHED:
             self.pace.finish(record.job_id, now)
         elif event == LogEvent.JOB_INFO and record.rule_name != "all" and not workflow.dryrun:
@@ -98,23 +99,12 @@ def where(name, *traits):
     return lambda wildcards: [f"results/{wildcards.study}/{name}"] * has(wildcards.study, *traits)
 
 
-def stored(wildcards):
-    """Return what figures and report are made from."""
-    names = ["findings.nc"] if has(wildcards.study, "checks") else ["runs.nc", "analysis.nc"]
-    return [f"results/{wildcards.study}/{name}" for name in names]
-
-
 def solving(wildcards):
-    """Return the sources of the runs; the analysis is one where it decides how many there are."""
+    """Return the sources of the runs; the analysis is one where it decides on number or grid."""
     deciding = ["analysis/**/*.py"] * has(wildcards.study, "growing")
+    deciding += ["analysis/convergence/*.py"] * has(wildcards.study, "auto")
     solid = ["fem3d/**/*.py"] * has(wildcards.study, "fem3d")
     return code(*SOLVER, "study/**/*.py", *deciding, *solid)
-
-
-def evidence(wildcards, input):
-    """Return what is known of the numerical uncertainty, as options."""
-    known = {"resolution": input.resolution, "refinement": input.refinement}
-    return " ".join(f"--{name} {file}" for name, file in known.items() if file)
 
 
 PACKAGE = Path("impactlab")  # of the checkout; elsewhere that which is installed
@@ -122,9 +112,10 @@ if not PACKAGE.is_dir() and (spec := importlib.util.find_spec("impactlab")):
     PACKAGE = Path(spec.origin).parent
 MODEL = ("variables.py", "model/*.py", "wings.py", "*/wing.py")
 SOLVER = (*MODEL, "simulate.py", "solver/**/*.py", "jit.py")
-FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "stored"))
-REPORTING = ("report/**/*.py", "report/templates/*")
+FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "outcomes"))
+REPORTING = ("variables.py", "figures/**/*.py", "report/**/*.py", "report/templates/*")
 DESCRIBED = read_studies()
 STUDIES = asked_studies(config.get("studies"))
 PAPER = [*sorted(name for name in DESCRIBED if name.startswith("fig")), "witness", "witness_mesh"]
-VERIFICATIONS = [study for study in STUDIES if has(study, "checks")]
+CHECKS = [study for study in DESCRIBED if has(study, "checks")]
+VERIFICATIONS = [study for study in STUDIES if study in CHECKS]

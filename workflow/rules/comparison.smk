@@ -1,12 +1,11 @@
 # Studies side by side: what differs between them, and what that changes.
 
 ruleorder: comparison > report
-ruleorder: comparison > figures
 
 
 rule comparison:
     input:
-        code=code("variables.py", "analysis/differences.py", "figures/**/*.py", *REPORTING),
+        code=code("analysis/differences.py", *REPORTING),
         stored=lambda wildcards: expand(
             "results/{study}/{name}",
             study=COMPARISONS[wildcards.comparison],

@@ -1,21 +1,24 @@
 # How long the rest of a run takes, from what its steps took: plain Python, tested as such.
 from statistics import fmean, median
 
-TYPICAL = {"verify": 120, "figures": 6, "analysis": 4, "resolution": 4, "runs": 3, "index": 3}
+TYPICAL = {"verify": 27, "report": 11, "report_checks": 12, "runs": 4, "index": 5, "comparison": 5}
 """Seconds of steps of which no benchmark is kept, 2 of others; their ratios matter alone."""
-ENOUGH = 4  # finished steps without benchmarks from which on the machine's speed is known
-HEAD_START = 10  # seconds for which steps are taken to follow one another
+ALONE = {"runs", "resolution", "refinement"}
+"""Rules whose steps take all cores; others run side by side."""
+ENOUGH = 2  # finished steps without benchmarks from which on the machine's speed is known
 
 
 class Pace:
     """Steps of a workflow: those to do, under way and done.
 
-    counts: steps to do by rule. recorded: seconds by rule and study, of an earlier run.
+    counts: steps to do by rule.
+    recorded: seconds by rule and study, of an earlier run.
+    cores: on which steps run side by side.
     """
 
-    def __init__(self, counts, recorded, begun):
-        self.counts, self.recorded, self.begun = dict(counts), dict(recorded), begun
-        self.running, self.ratios, self.busy = {}, [], 0.0
+    def __init__(self, counts, recorded, cores):
+        self.counts, self.recorded, self.cores = dict(counts), dict(recorded), cores
+        self.running, self.ratios = {}, []
         self.is_new = 2 * len(self.recorded) < sum(self.counts.values())
 
     def expected(self, rule):
@@ -27,13 +30,12 @@ class Pace:
         """Count a step as under way."""
         mean = self.expected(rule)
         self.counts[rule] = self.counts.get(rule, 1) - 1
-        self.running[job] = now, self.recorded.pop((rule, study), mean)
+        self.running[job] = rule, now, self.recorded.pop((rule, study), mean)
 
     def finish(self, job, now):
         """Count a step as done."""
         if job in self.running:
-            start, seconds = self.running.pop(job)
-            self.busy += now - start
+            _, start, seconds = self.running.pop(job)
             self.ratios.append((now - start) / seconds)
 
     def left(self, now):
@@ -41,12 +43,12 @@ class Pace:
         if self.is_new and len(self.ratios) < ENOUGH:
             return None
         speed = median(self.ratios) if self.ratios else 1.0
-        seconds = sum(count * self.expected(rule) for rule, count in self.counts.items())
-        rest = speed * seconds + sum(
-            max(0.0, speed * seconds - (now - start)) for start, seconds in self.running.values()
-        )
-        busy = self.busy + sum(now - start for start, _ in self.running.values())
-        return rest * (now - self.begun + HEAD_START) / (busy + HEAD_START)
+        rest = [(rule, speed * count * self.expected(rule)) for rule, count in self.counts.items()]
+        rest += [
+            (rule, max(0.0, speed * seconds - (now - start)))
+            for rule, start, seconds in self.running.values()
+        ]
+        return sum(seconds / (1 if rule in ALONE else self.cores) for rule, seconds in rest)
 
 
 def duration(seconds):

@@ -4,10 +4,8 @@
 rule paper:
     input:
         code=code(
-            "variables.py",
             "paper/**/*.py",
             "paper/templates/*",
-            "figures/**/*.py",
             "verification/solutions/*.py",
             *REPORTING,
         ),

@@ -1,6 +1,27 @@
-# From a study file to its solved runs.
+# From a study file to its solved runs, in one process: programs take longer to load than most steps take.
 
 
+# Pilot runs, design and refinement come with them (resolution.nc, design.nc, refinement.nc), and shards,
+# which are no outputs: Snakemake would remove them when a job fails.
+rule runs:
+    input:
+        code=solving,
+        study="studies/{study}.yaml",
+    output:
+        "results/{study}/runs.nc",
+    log:
+        "results/{study}/logs/runs.log",
+    benchmark:
+        "results/{study}/benchmarks/runs.tsv"
+    threads: os.cpu_count()  # scaled down to --cores
+    priority: 2  # with all cores, before what takes one
+    conda:
+        "../../environment.yaml"
+    shell:
+        "impactlab --log {log} go {input.study} --only solve --workers {threads}"
+
+
+# For those who ask for its file alone, as the two below.
 rule resolution:
     input:
         code=code(*SOLVER, "study/**/*.py", "analysis/convergence/*.py"),
@@ -35,24 +56,6 @@ rule design:
         "../../environment.yaml"
     shell:
         "impactlab --log {log} design {input.study} --output {output}"
-
-
-# Its shards live beside the output, not as one: Snakemake would remove them when a job fails.
-rule runs:
-    input:
-        code=solving,
-        design="results/{study}/design.nc",
-    output:
-        "results/{study}/runs.nc",
-    log:
-        "results/{study}/logs/runs.log",
-    benchmark:
-        "results/{study}/benchmarks/runs.tsv"
-    threads: os.cpu_count()  # scaled down to --cores
-    conda:
-        "../../environment.yaml"
-    shell:
-        "impactlab --log {log} run {input.design} --output {output} --workers {threads}"
 
 
 rule refinement:

@@ -1,5 +1,7 @@
 # Checks of the solver against independent solutions.
 
+ruleorder: report_checks > report
+
 
 # Checks that fail are findings like others: the report comes first, the verdict last.
 rule verify:
@@ -13,10 +15,36 @@ rule verify:
     benchmark:
         "results/{study}/benchmarks/verify.tsv"
     threads: 1
+    priority: 1  # beside the reports, for it takes long on one core
     conda:
         "../../environment.yaml"
     shell:
         "impactlab --log {log} verify {input.study} --output {output} --exit-zero"
+
+
+use rule report as report_checks with:
+    input:
+        code=code(*FINDINGS, *REPORTING),
+        study="studies/{study}.yaml",
+        findings="results/{study}/findings.nc",
+    output:
+        report(
+            directory("results/{study}/figures"),
+            patterns=["{figure}.svg"],
+            caption="../captions/figures.rst",
+            category="{study}",
+            labels={"item": "{figure}"},
+        ),
+        report(
+            "results/{study}/report.html",
+            caption="../captions/report.rst",
+            category="{study}",
+            labels={"item": "report"},
+        ),
+    benchmark:
+        "results/{study}/benchmarks/report_checks.tsv"
+    wildcard_constraints:
+        study="|".join(CHECKS) or "(?!)",
 
 
 # After everything else, so that a failure hides no report.
