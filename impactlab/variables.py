@@ -85,27 +85,26 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "yield_ratio_outside_data": (
         outputs.YIELD_RATIO_OUTSIDE_DATA,
-        "E*/S_y is outside 300 to 660, the data of the contact law: dents may be off by 3 to 6 %",
+        "E*/S_y is outside 60 to 1500, the data of the contact law",
     ),
     "poissons_ratio_outside_data": (
         outputs.POISSONS_RATIO_OUTSIDE_DATA,
-        "the beam's Poisson's ratio is outside 0.22 to 0.36, where the data of the contact law "
-        "hold: dents may be off by 5 to 6 %",
+        "the beam's Poisson's ratio is outside 0.05 to 0.45, the data of the contact law",
     ),
     "hardening_outside_data": (
         outputs.HARDENING_OUTSIDE_DATA,
-        "the beam's hardening modulus is above 0.004 of its Young's modulus, and the contact law "
-        "has none: dents may be off by 11 %, forces by 5 %",
+        "the beam's hardening modulus is above 0.05 of its Young's modulus, where the data of the "
+        "contact law end, or kinematic hardening lets the contact yield in reverse",
     ),
     "sphere_yield_outside_data": (
         outputs.SPHERE_YIELD_OUTSIDE_DATA,
-        "the sphere's yield stress is below 1.7 times the beam's, and the sphere of the contact "
-        "law does not yield: dents may be off by 11 %, forces by 4 %",
+        "the sphere's yield stress is below 1 times the beam's: a sphere that is softer than the "
+        "beam was not compared with 3-D",
     ),
     "stiffness_ratio_outside_data": (
         outputs.STIFFNESS_RATIO_OUTSIDE_DATA,
-        "the sphere's Young's modulus is outside 0.75 to 1.75 times the beam's, where the data of "
-        "the contact law hold: dents may be off by 4 to 7 %",
+        "the sphere's Young's modulus is outside 0.33 to 10 times the beam's, the data of the "
+        "contact law",
     ),
     "contact_circle_outside_data": (
         outputs.CONTACT_CIRCLE_OUTSIDE_DATA,

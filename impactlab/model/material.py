@@ -12,7 +12,8 @@ from impactlab.model.quantities import SI, engineering
 class Material:
     """An isotropic metal with linear isotropic and kinematic hardening.
 
-    Hardening acts in the beam's fibres only: the contact laws know the initial yield stress alone.
+    Hardening acts in the beam's fibres and in the contact law `finite_element`; the other laws know
+    the initial yield stress alone.
 
     Parameters
     ----------

@@ -23,6 +23,7 @@ from impactlab.solver.contact.finite_element import (
     LEAST_STIFFNESS,
 )
 from impactlab.solver.contact.history import Pair, energies
+from impactlab.solver.contact.metals import LARGEST_REVERSAL
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import is_damped, limit, radius
 from impactlab.solver.jit import compiled
@@ -101,15 +102,16 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
         largest = min(LARGEST_CIRCLE * case.beam_depth, LARGEST_CIRCLE_ACROSS * case.beam_width)
         if a > 0.5 * largest:
             answer.remarks |= CONTACT_CIRCLE_OUTSIDE_DATA
-    yields = contact.delta_m > yield_indentation(pair.E, pair.R, pair.S_y)
-    if not (yields and (corrected or pair.law == _FINITE_ELEMENT)):
+    x = contact.delta_m / yield_indentation(pair.E, pair.R, pair.S_y)
+    if not (x > 1.0 and (corrected or pair.law == _FINITE_ELEMENT)):
         return
     if not LEAST_RATIO <= pair.E / pair.S_y <= LARGEST_RATIO:
         answer.remarks |= YIELD_RATIO_OUTSIDE_DATA
     if not LEAST_POISSONS_RATIO <= case.beam_poissons_ratio <= LARGEST_POISSONS_RATIO:
         answer.remarks |= POISSONS_RATIO_OUTSIDE_DATA
     hardening = case.beam_isotropic_hardening_modulus + case.beam_kinematic_hardening_modulus
-    if hardening > LARGEST_HARDENING * case.beam_youngs_modulus:
+    reverses = pair.shape[26] * np.sqrt(x) > LARGEST_REVERSAL
+    if hardening > LARGEST_HARDENING * case.beam_youngs_modulus or reverses:
         answer.remarks |= HARDENING_OUTSIDE_DATA
     if case.sphere_yield_stress < LEAST_HARDNESS * pair.S_y:
         answer.remarks |= SPHERE_YIELD_OUTSIDE_DATA

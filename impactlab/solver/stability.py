@@ -49,10 +49,10 @@ def _stiffness(pair: Pair, delta: float) -> tuple[float, float]:
     force, which brings an energy of jump^2 dt^2/m; with dt^2/m = 4/k it is a share 4 jump^2/(k W)
     of the loading work W, of which 0.4 F delta is taken.
     """
-    F, K, delta_r, n = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
+    F, K, delta_r, n = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
     small = 1e-4 * delta
-    after, _, _, _ = curve(pair.law, delta + small, pair.E, pair.R, pair.S_y, pair.nu)
-    before, _, _, _ = curve(pair.law, delta - small, pair.E, pair.R, pair.S_y, pair.nu)
+    after, _, _, _ = curve(pair.law, delta + small, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
+    before, _, _, _ = curve(pair.law, delta - small, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
     loading = min(after - F, F - before) / small
     start = K * max(delta - delta_r, 0.0) ** n
     unloading = n * start / (delta - delta_r)

@@ -19,6 +19,8 @@ ONE, TWO = np.uint64(1), np.uint64(2)
 index might be negative, that is, count from the end."""
 Unloading = tuple[float, float, float, float]
 """What a contact law's `curve` gives: see contact/hertz.py."""
+Shape = tuple[float, ...]
+"""What a law's `shape` makes of the two metals, for its `curve`: see contact/metals.py."""
 
 ELASTIC = BEAM_MODELS.index("elastic")
 TIMOSHENKO = BEAM_MODELS.index("timoshenko")

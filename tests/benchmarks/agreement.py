@@ -96,10 +96,10 @@ def impacts() -> Iterator[tuple[str, float, float, il.Impact]]:
 
 
 def mean_solid(
-    impact: il.Impact, duration: float, meshes: Sequence[float]
+    impact: il.Impact, duration: float, meshes: Sequence[float], case: str = ""
 ) -> tuple[xr.Dataset, dict[str, float]]:
     """Return the mean of the 3-D runs on all meshes, and half the range of each response in %."""
-    runs = [solid(impact, duration, elements) for elements in meshes]
+    runs = [solid(impact, duration, elements, case) for elements in meshes]
     times = runs[0].time.values
     histories = np.array([np.interp(times, run.time, run.contact_force) for run in runs])
     mean = runs[0].assign(contact_force=("time", histories.mean(axis=0)))
@@ -115,12 +115,17 @@ def mean_solid(
     return mean, spread
 
 
-def solid(impact: il.Impact, duration: float, elements: float) -> xr.Dataset:
-    """Solve an impact with 3-D finite elements, or read it if it was solved before."""
+def solid(impact: il.Impact, duration: float, elements: float, case: str = "") -> xr.Dataset:
+    """Solve an impact with 3-D finite elements, or read it if it was solved before.
+
+    case: name of a case that differs by more than velocity, depth, radius and yield stress.
+    """
     size = contact_radius(impact) / elements
     depth, radius = 1e3 * impact.beam.depth, 1e3 * impact.sphere.radius
     stress = 1e-6 * impact.beam.material.yield_stress
     name = f"{depth:g}_{radius:g}_{stress:g}_{impact.velocity:g}_{1e3 * duration:g}_{elements:g}.nc"
+    if case:
+        name = f"{case}, {elements:g}.nc"
     path = ROOT / "results" / "agreement" / name
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -231,14 +231,13 @@ _REGISTRY = (
         short="finite elements",
         title="Fit to finite elements",
         source=(
-            "an axisymmetric quasi-static finite-element solve, loading and unloading: "
-            "tests/benchmarks/sphere_indentation.py, its data in finite_element.csv"
+            "an axisymmetric quasi-static finite-element solve over the metals of both bodies, "
+            "loading and unloading: tests/benchmarks/sphere_indentation.py and contact_law.py"
         ),
         holds_for=(
-            "indentation up to 320 times that of first yield and 0.0194 of the sphere's radius, "
-            "where the data end; E*/S_y from 300 to 660 (fitted at 333; at 600 the force is up "
-            "to 1.1 % higher); Poisson's ratio 0.3 and an elastic sphere about as stiff as the "
-            "flat (a rigid one: lower by 8 %)"
+            "indentation up to 0.045 of the sphere's radius, where the data end; E*/S_y from 60 to "
+            "1500; of the softer body, Poisson's ratio from 0.05 to 0.45, hardening up to 0.05 of "
+            "Young's modulus, a third to ten times less stiff than the other"
         ),
         yield_pressure=1.65,
     ),

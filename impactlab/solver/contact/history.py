@@ -22,10 +22,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from impactlab.solver.contact.switch import curve
+from impactlab.solver.contact.metals import LIKE_METALS
+from impactlab.solver.contact.switch import curve, shape
 from impactlab.solver.jit import compiled, inlined, linked
 from impactlab.solver.strain_rate import contact_rate, rate_factor
-from impactlab.solver.types import Record, record
+from impactlab.solver.types import Record, Shape, record
 
 
 class Pair(NamedTuple):
@@ -35,7 +36,7 @@ class Pair(NamedTuple):
     stress (Pa) and Poisson's ratio. compliance (m/N), bending (m2): approach of the bodies beyond
     that of half-spaces, per force and per M/(EI) at mid-span; zero for half-spaces.
     prestress: depth of the beam (m; 0: its stress is ignored) and stresses along and across it per
-    force (1/m2), see contact/prestress.py.
+    force (1/m2), see contact/prestress.py. shape: of the law's curve by the two metals.
     """
 
     law: int
@@ -46,6 +47,7 @@ class Pair(NamedTuple):
     compliance: float = 0.0
     bending: float = 0.0
     prestress: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    shape: Shape = LIKE_METALS
 
 
 CONTACT = record(
@@ -81,20 +83,26 @@ def make_pair(case: Record) -> Pair:
 
     The beam's yield stress is that at its strain rate under the contact (strain_rate.py).
     """
-    compliance = (1.0 - case.sphere_poissons_ratio**2) / case.sphere_youngs_modulus + (
-        1.0 - case.beam_poissons_ratio**2
-    ) / case.beam_youngs_modulus
+    of_beam = (1.0 - case.beam_poissons_ratio**2) / case.beam_youngs_modulus
+    compliance = (1.0 - case.sphere_poissons_ratio**2) / case.sphere_youngs_modulus + of_beam
     E, R = 1.0 / compliance, case.sphere_radius
     factor = rate_factor(
         contact_rate(case, E, R), case.beam_rate_coefficient, case.beam_rate_exponent
     )
     S_y, nu = case.beam_yield_stress * factor, case.beam_poissons_ratio
+    share, hardness = E * of_beam, case.sphere_yield_stress / S_y
+    kinematic = case.beam_kinematic_hardening_modulus
+    hardening = case.beam_isotropic_hardening_modulus + kinematic
+    kinematic /= max(hardening, 1.0)
+    hardening /= case.beam_youngs_modulus
     depth = case.beam_depth if case.contact_prestress > 0 else 0.0
     if S_y > case.sphere_yield_stress:
         S_y, nu, depth = case.sphere_yield_stress, case.sphere_poissons_ratio, 0.0
+        share, hardness, hardening = 1.0 - share, 1.0 / hardness, 0.0
     compliances = case.compliance, case.bending_compliance
     prestress = depth, case.stress_along, case.stress_across
-    return Pair(case.contact, E, R, S_y, nu, *compliances, prestress)
+    metals = shape(case.contact, E / S_y, share, nu, hardening, kinematic, hardness)
+    return Pair(case.contact, E, R, S_y, nu, *compliances, prestress, metals)
 
 
 @compiled
@@ -102,7 +110,7 @@ def load(contact: Record, pair: Pair, delta: float) -> None:
     """Move the furthest point of loading on to delta."""
     contact.delta_m = contact.approach_m = delta
     contact.F_m, contact.K, contact.delta_r, contact.n = curve(
-        pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu
+        pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu, pair.shape
     )
 
 
@@ -194,7 +202,7 @@ def load_to(contact: Record, pair: Pair, approach: float) -> None:
     missed_before = before + pair.compliance * F_before - approach
     delta, step, missed = approach - pair.compliance * F_before, 1.0, 1.0
     for _ in range(_ITERATIONS):
-        F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
+        F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
         missed = delta + pair.compliance * F - approach
         if delta == before or missed == missed_before:
             break
@@ -251,13 +259,13 @@ def loading_work(pair: Pair, start: float, stop: float, panels: int = PANELS) ->
     in which delta^1.5 is smooth at zero; the panels keep a regime limit of a law from costing
     accuracy. Where delta snaps, the force is that of the spring.
     """
-    F, _, _, _ = curve(pair.law, start, pair.E, pair.R, pair.S_y, pair.nu)
+    F, _, _, _ = curve(pair.law, start, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
     total, furthest = 0.0, start + pair.compliance * F
     for panel in range(panels):
         for point, weight in _GAUSS:
             root = (panel + point) / panels
             delta = start + root * root * (stop - start)
-            F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
+            F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
             borne = delta + pair.compliance * F
             if borne < furthest:
                 F = (furthest - delta) / pair.compliance

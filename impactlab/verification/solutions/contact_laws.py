@@ -18,6 +18,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from impactlab.model.impact import Impact
+from impactlab.solver.contact import metals
+from impactlab.solver.contact.finite_element import LARGEST_DEPTH
 from impactlab.verification.solutions import hertz as hertz_forms
 
 # Loading: F(d, E, R, S, nu) in N.
@@ -44,13 +46,24 @@ def stronge_consistent(d: float, E: float, R: float, S: float, nu: float) -> flo
 
 
 def finite_element(d: float, E: float, R: float, S: float, nu: float) -> float:
-    """Return the fit to finite elements: Hertz less a share of ln(x)^2; linear from x = 320 on."""
-    x = d / (R * (0.825 * math.pi * S / E) ** 2)
-    if x <= 1.0:
+    """Return the fit to finite elements for two like metals: Hertz bent down; linear at the end."""
+    if d <= R * (0.825 * math.pi * S / E) ** 2:
         return hertz(d, E, R, S, nu)
-    end = min(x, 320.0)
-    exponent = -0.03499424 * math.log(end) ** 2 + 0.00025112 * math.log(end) ** 3
-    return hertz(d * end / x, E, R, S, nu) * math.exp(exponent) * x / end
+    end = min(d, LARGEST_DEPTH * R)
+    w, root, terms, strain = _fit(end, E, R, S, nu)
+    powers = (w**2, w**3, w**4, w**5, 2.0 * w**2 * math.log(root))
+    exponent = math.fsum(map(math.prod, zip(terms[:5], powers, strict=True)))
+    return hertz(end, E, R, S, nu) * math.exp(exponent + strain[0] * w * root) * d / end
+
+
+def _fit(
+    d: float, E: float, R: float, S: float, nu: float
+) -> tuple[float, float, list[float], list[float]]:
+    """Return 1 - 1/sqrt(x), sqrt(x) and the coefficients for bodies of one modulus."""
+    root, v = math.sqrt(d / R) / (0.825 * math.pi * S / E), 4.0 * (nu - 0.3)
+    terms = [row[0] + row[2] * v + row[5] * v**2 for row in metals.PLAIN.tolist()]
+    strain = [row[0] + (row[1] + row[3] * v) * 100.0 * S / E for row in metals.STRAIN.tolist()]
+    return 1.0 - 1.0 / root, root, terms, strain
 
 
 def jackson_green(
@@ -141,16 +154,18 @@ def jackson_unloading(d: float, F: float, E: float, R: float, S: float, nu: floa
 
 
 def finite_unloading(d: float, F: float, E: float, R: float, S: float, nu: float) -> Unloading:
-    """Return the fit to finite elements: quartics in ln(x), x up to 320."""
+    """Return the fit to finite elements for two like metals."""
     d_y = R * (0.825 * math.pi * S / E) ** 2
     if d <= d_y:
         return F, 0.0, 1.5
-    log = math.log(min(d / d_y, 320.0))
-    shares = (1.0, 0.20880608, -0.07558935, 0.01483939, -0.00101521)
-    exponents = (1.5, -0.06673731, -0.0293631, 0.01219818, -0.00097196)
-    share = sum(c * log**k for k, c in enumerate(shares))
-    recovered = share * math.sqrt(d_y * F / hertz(d_y, E, R, S, nu) * d_y)
-    return F, d - recovered, sum(c * log**k for k, c in enumerate(exponents))
+    w, root, terms, strain = _fit(min(d, LARGEST_DEPTH * R), E, R, S, nu)
+    powers = (w**2, w**3, w**4, 2.0 * w**2 * math.log(root))
+    shares, exponents = (
+        math.fsum(map(math.prod, zip(terms[i : i + 4], powers, strict=True))) for i in (5, 9)
+    )
+    share = 1.0 + metals.ONSET * w + shares + strain[1] * w**2 * root
+    n = 1.5 + metals.ONSET_EXPONENT * w + exponents + strain[2] * w**2 * root
+    return F, d - share * d_y * math.sqrt(F / hertz(d_y, E, R, S, nu)), n
 
 
 def thornton_unloading(d: float, F: float, E: float, R: float, S: float, nu: float) -> Unloading:
@@ -204,11 +219,11 @@ def joints(E: float, R: float, S: float, nu: float) -> list[float]:
     plastic = 0.5 * (math.exp(5.1) + 1.0)
     capped = 15.415907653904072  # where x^1.5 = (2 x - 1) (1 + ln(2 x - 1)/3.3)
     steps = (
-        (stronge_y, (1.0, capped, plastic, 320.0)),
+        (stronge_y, (1.0, capped, plastic)),
         (jackson_c, (1.0, 1.9)),
         (kogut_c, (1.0, 6.0, 110.0)),
     )
-    return sorted([thornton_y, *(d * x for d, shares in steps for x in shares)])
+    return sorted([thornton_y, LARGEST_DEPTH * R, *(d * x for d, shares in steps for x in shares)])
 
 
 @dataclass(frozen=True)

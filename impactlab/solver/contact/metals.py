@@ -1,0 +1,152 @@
+"""What the two metals make of the curve of `finite_element`.
+
+The curve (finite_element.py) is linear in 25 functions of the indentation. Their coefficients are
+polynomials in
+    u = 2 share - 1         share: of the compliance 1/E* that is the softer body's
+    v = 4 (nu - 0.3)        nu: its Poisson's ratio
+    t = S/S_other - 0.4     S: yield stresses; 0 where the other body is harder than 2.5 times
+    m = 100 S/E*
+    k                       share of its hardening modulus that is kinematic
+PLAIN: of 13 functions of x = delta/delta_y; STRAIN: of three that finite strains add; HARDENING: of
+nine that grow with q sqrt(x), q = H (1 - nu^2)/(E share), H its hardening modulus.
+
+Fitted by tests/benchmarks/contact_law.py, which says to what, and writes them here. Beyond the
+data the numbers are held at their ends.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from impactlab.solver.jit import compiled
+from impactlab.solver.types import Array, Shape
+
+LEAST_RATIO, LARGEST_RATIO = 60.0, 1500.0
+LEAST_SHARE, LARGEST_SHARE = 0.24, 0.92
+LEAST_POISSONS_RATIO, LARGEST_POISSONS_RATIO = 0.05, 0.45
+LARGEST_HARDENING = 0.05
+LARGEST_REVERSAL = 1.0
+"""k q sqrt(x) at which unloading is held: beyond, metal yields in reverse and no longer unloads by
+a power of what is left."""
+ONSET, ONSET_EXPONENT = 0.33, -0.14
+"""First-order parts of what is recovered and of the exponent in w (finite_element.py): no metal
+creates energy if the first is below 0.5 plus 0.4 times the second."""
+
+# fmt: off
+PLAIN = np.array([
+    [0.093255, -0.23695, 0.20494, -0.18165, -0.00022853, -0.34784, -0.41725, 0.42448,
+     -0.25345, 0.57443, 0.14684],
+    [0.28334, 0.40147, -0.44147, 1.7438, 1.103, 1.1425, 1.6065, -1.9748,
+     0.89701, -1.8815, 0.34753],
+    [-0.31857, -0.64083, 0.82359, -3.0324, -2.5083, -1.1581, -1.5731, 1.4132,
+     -3.0437, 6.7767, -1.7168],
+    [1.2106, -0.19284, -0.5161, 2.0283, 1.6109, 0.22173, 0.026695, -0.24244,
+     2.3164, -3.569, 1.7157],
+    [-0.39257, 0.081058, -0.0084085, -0.078254, -0.020755, 0.017197, 0.061059, 0.10254,
+     -0.034071, -0.34719, -0.074169],
+    [0.1537, -0.40317, 0.50266, 0.10029, 0.50537, -0.12399, 0.36197, -0.50321,
+     -0.90885, 0.85717, 0.28195],
+    [-0.38456, 0.18853, -0.69868, 0.11226, -1.0983, 0.3285, 0.065992, 0.11995,
+     -0.56275, 1.4836, -1.2188],
+    [-0.091066, 0.18535, 0.23628, -0.2094, 0.55165, -0.224, 0.22226, -0.24839,
+     0.18316, -0.81325, 1.2923],
+    [0.075879, -0.0044769, -0.014846, -0.0031446, 0.012913, 0.0027341, -0.12595, 0.15915,
+     0.21751, -0.2994, -0.057559],
+    [-0.19489, -0.4071, 0.2878, -0.19743, 0.44436, -0.26966, -0.12879, -0.43763,
+     -0.78976, 0.30054, 0.40218],
+    [-0.29993, 0.76066, -0.71714, 0.87529, -1.1036, 0.68643, 0.73401, 0.95498,
+     0.84892, 1.3702, -1.3537],
+    [-0.10357, -0.25949, 0.62073, -0.97013, 0.575, -0.20364, -0.0060228, -0.72004,
+     -0.91169, -2.7915, 1.381],
+    [0.10576, -0.025664, -0.036611, 0.044607, 0.012553, -0.039822, -0.13117, 0.073168,
+     0.19384, 0.11663, -0.058536],
+])
+STRAIN = np.array([
+    [-0.0036185, -0.0026656, 0.0035669, -0.0015554, -0.0019535],
+    [-0.0026393, 0.0027798, -0.0097067, 0.010786, -0.0082055],
+    [-0.0034783, 0.013218, -0.0032492, 0.0091847, -0.027265],
+])
+HARDENING = np.array([
+    [0.38004, 0.45645, 0.28224, -0.10978, -0.040952, -0.44527, 0.13343],
+    [-0.45112, -0.3977, -0.50707, -0.067263, 0.067475, 0.71587, -0.07332],
+    [0.050361, -0.0041881, 0.033433, -0.035594, -0.012082, -0.038194, 0.0057835],
+    [0.44951, 0.35766, -0.12882, -0.43423, -0.10407, 0.18617, -1.325],
+    [-0.23807, -0.06934, 0.14255, 0.29903, 0.49574, -0.68847, 1.0063],
+    [0.062897, -0.33088, 0.010718, -0.29202, -0.071394, 0.80531, 0.0091309],
+    [0.49009, 0.31373, -0.082285, 0.31, 0.34726, 0.09861, -0.6221],
+    [-0.89134, -0.10421, 0.0021796, 0.17096, 0.074804, -0.59884, -0.18126],
+    [0.11401, -0.38249, 0.049921, -0.25033, -0.018095, 0.99955, 0.30965],
+])
+# fmt: on
+
+
+@compiled
+def _sum(table: Array, row: int, monomials: tuple[float, ...]) -> float:
+    """Return a coefficient: a row of a table times the monomials."""
+    total = 0.0
+    for j in range(len(monomials)):
+        total += table[row, j] * monomials[j]
+    return total
+
+
+@compiled
+def shape(
+    yield_ratio: float,
+    share: float,
+    nu: float,
+    hardening: float,
+    kinematic: float,
+    hardness: float,
+) -> Shape:
+    """Return the coefficients of the curve of two metals, q and k q.
+
+    yield_ratio: E*/S_y of the softer metal; share: of the compliance 1/E* that is its own; nu: its
+    Poisson's ratio; hardening: its hardening moduli over Young's; kinematic: share of the latter;
+    hardness: the other's yield stress over its own.
+    """
+    share = min(max(share, LEAST_SHARE), LARGEST_SHARE)
+    nu = min(max(nu, LEAST_POISSONS_RATIO), LARGEST_POISSONS_RATIO)
+    hardening = min(hardening, LARGEST_HARDENING)
+    u, v, k = 2.0 * share - 1.0, 4.0 * (nu - 0.3), kinematic
+    t = max(1.0 / hardness - 0.4, 0.0)
+    m = 100.0 / min(max(yield_ratio, LEAST_RATIO), LARGEST_RATIO)
+    plain = (1.0, u, v, u * u, u * v, v * v, t, t * u, t * t, t * t * u, t * v)
+    strain = (1.0, m, m * u, m * v, m * t)
+    hardened = (1.0, u, v, t, k, k * u, k * t)
+    q = hardening * (1.0 - nu * nu) / share
+    # written out: kernels have no arrays of their own
+    return (
+        _sum(PLAIN, 0, plain),
+        _sum(PLAIN, 1, plain),
+        _sum(PLAIN, 2, plain),
+        _sum(PLAIN, 3, plain),
+        _sum(PLAIN, 4, plain),
+        _sum(PLAIN, 5, plain),
+        _sum(PLAIN, 6, plain),
+        _sum(PLAIN, 7, plain),
+        _sum(PLAIN, 8, plain),
+        _sum(PLAIN, 9, plain),
+        _sum(PLAIN, 10, plain),
+        _sum(PLAIN, 11, plain),
+        _sum(PLAIN, 12, plain),
+        _sum(STRAIN, 0, strain),
+        _sum(STRAIN, 1, strain),
+        _sum(STRAIN, 2, strain),
+        _sum(HARDENING, 0, hardened),
+        _sum(HARDENING, 1, hardened),
+        _sum(HARDENING, 2, hardened),
+        _sum(HARDENING, 3, hardened),
+        _sum(HARDENING, 4, hardened),
+        _sum(HARDENING, 5, hardened),
+        _sum(HARDENING, 6, hardened),
+        _sum(HARDENING, 7, hardened),
+        _sum(HARDENING, 8, hardened),
+        q,
+        k * q,
+    )
+
+
+LIKE_METALS: Shape = tuple(
+    map(float, getattr(shape, "py_func", shape)(333.0, 0.5, 0.3, 0.0, 0.0, np.inf))
+)
+"""Of a flat and an elastic sphere of the same modulus, E*/S_y = 333, which do not harden."""

@@ -1,0 +1,264 @@
+"""Fit the contact law `finite_element` over the metals of both bodies.
+
+    python tests/benchmarks/contact_law.py solve PART PARTS
+    python tests/benchmarks/contact_law.py
+
+The first solves its part of a designed sample with sphere_indentation.py, an hour for all of it on
+two cores, and appends to indentation.csv beside this file. The second fits that and the finer data
+of two equal metals (impactlab/solver/contact/finite_element.csv), prints the errors of the fit and
+of runs held out (ten parts), and writes the coefficients to
+impactlab/solver/contact/metals.py, which says what they are.
+
+The sample is three Sobol designs over the flat's share of the compliance, its Poisson's ratio,
+E*/S_y, its hardening modulus and how much of that is kinematic, the sphere's yield stress and the
+depth: one over all, two for deep indentations and much hardening. Its runs have 20 elements over
+the radius of contact and 60 steps, which make the force BIAS too small in the mean, and what
+is recovered as much too large.
+"""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+from scipy.optimize import least_squares
+from scipy.stats import qmc
+
+from impactlab.solver.contact import metals
+
+HERE = Path(__file__).parent
+DATA = HERE / "indentation.csv"
+MODULE = Path(metals.__file__)
+FINE = MODULE.with_name("finite_element.csv")
+LARGEST_DEPTH = 0.022
+"""delta/R of the first two designs."""
+DESIGNS = {"all": (160, 7), "deep": (28, 5)}
+"""Number of cases and seed of each design."""
+BIAS = 0.004
+"""Share by which the force of the sample is too small."""
+WEIGHT = 6.0
+"""Of the finer data."""
+RIDGE = 1e-6, 1e-4, 1e-4
+PARTS = 10
+ONSET = 0.0, metals.ONSET, metals.ONSET_EXPONENT
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+METALS = ["E_over_S", "share", "nu", "isotropic", "kinematic", "sphere_yield"]
+
+
+def cases() -> Iterator[dict[str, float]]:
+    """Yield the options of sphere_indentation.py of each case."""
+    for design, (number, seed) in DESIGNS.items():
+        deep = design == "deep"
+        for i, u in enumerate(qmc.Sobol(7, seed=seed).random(256 if not deep else 32)[:number]):
+            modulus = 200 * 7.5 ** u[2] if deep else 60 * 25 ** u[2]
+            hardening = 0.05 * u[3] ** (1.5 if deep else 2.0) * (i % 4 > 0)
+            kinematic = 0.4 + 0.6 * u[5] if deep else u[5]
+            first_yield = (0.825 * math.pi / modulus) ** 2
+            deepest = LARGEST_DEPTH / first_yield
+            depth = deepest * 0.4 ** u[6] if deep else 6 * (deepest / 6) ** u[6]
+            yield {
+                "modulus": modulus,
+                "share": 0.25 + 0.66 * u[0],
+                "nu": 0.05 + 0.4 * u[1],
+                "isotropic": hardening * (1 - kinematic),
+                "kinematic": hardening * kinematic,
+                "sphere-yield": 1 / u[4] if u[4] > 0.4 else math.inf,
+                "depth": depth,
+            }
+
+
+def solve(part: int, parts: int) -> None:
+    """Solve every `parts`-th case and append its rows to the data."""
+    for number, options in enumerate(cases()):
+        if number % parts != part:
+            continue
+        depth = options["depth"]
+        output = DATA.with_suffix(f".{number}.csv")
+        words = [f"--{name}={value:.5g}" for name, value in options.items()]
+        words += ["--unload", f"{max(depth / 5, 2):.5g}", f"{depth:.5g}"]
+        words += ["--elements=20", "--steps=60"]
+        script = str(HERE / "sphere_indentation.py")
+        subprocess.run([sys.executable, script, str(output), *words], check=True)
+        rows = pd.read_csv(output)[[*METALS, "x_max", "x", "F", "a_over_R"]]
+        rows.insert(0, "run", number)
+        rows.to_csv(DATA, mode="a", header=not DATA.exists(), index=False, float_format="%.6g")
+        output.unlink()
+
+
+class Sample(NamedTuple):
+    """Values of a function of x for one metal, (number,), with their weights."""
+
+    x: Floats
+    values: Floats
+    weights: Floats
+
+
+class Run(NamedTuple):
+    """What one solve says: of the force, of what is recovered, and of the exponent."""
+
+    metals: tuple[float, ...]
+    samples: tuple[Sample, Sample, Sample]
+
+
+def read() -> tuple[list[Run], list[Run]]:
+    """Return the runs of the finer data and those of the sample."""
+    fine = pd.read_csv(FINE).query("sphere == 'elastic' and strains == 'large' and E_over_S < 400")
+    fine = fine.assign(share=0.5, nu=0.3, isotropic=0.0, kinematic=0.0, sphere_yield=math.inf)
+    sample = pd.read_csv(DATA)
+    designed = [run(rows, BIAS, 1.0) for _, rows in sample.groupby("run")]
+    return [run(fine, 0.0, WEIGHT)], designed
+
+
+def run(rows: pd.DataFrame, bias: float, weight: float) -> Run:
+    """Read one solve; weights grow with the elements in contact."""
+    loading = rows[(rows.x == rows.x_max) & (rows.x > 1.05)]
+    x, F = loading.x.to_numpy(), loading.F.to_numpy()
+    weights = weight * np.sqrt(loading.a_over_R / loading.a_over_R.max()).to_numpy()
+    force = Sample(x, np.log(F / x**1.5) + bias, weights)
+    tops = []
+    metal = tuple(float(rows[name].iloc[0]) for name in METALS)
+    reversal = metal[4] * (1 - metal[2] ** 2) / metal[1]
+    for top, branch in rows[rows.x < rows.x_max].groupby("x_max"):
+        peak = float(loading.F[loading.x == top].iloc[0]) if (loading.x == top).any() else 0.0
+        if reversal * math.sqrt(top) > metals.LARGEST_REVERSAL:
+            continue
+        if top > 1.9 and peak > 0.0 and (0.02 * peak < branch.F).sum() >= 5:
+            tops.append((top, *unloading(branch, top, peak)))
+    at, recovered, exponent = np.array(tops).reshape(-1, 3).T
+    ones = np.full(len(at), weight)
+    last = Sample(at, exponent - 1.5, ones)
+    return Run(metal, (force, Sample(at, recovered - 1.0 - 0.75 * bias, ones), last))
+
+
+def unloading(branch: pd.DataFrame, top: float, peak: float) -> Floats:
+    """Return what is recovered over sqrt(F), in first yields, and the exponent of unloading."""
+    x, share = branch.x.to_numpy(), branch.F.to_numpy() / peak
+    x, share = x[share > 0.02], share[share > 0.02]
+
+    def missed(p: Floats) -> Floats:
+        over = 1.0 - (top - x) / (p[0] * math.sqrt(peak))
+        return np.asarray(np.maximum(over, 1e-9) ** p[1] - share)
+
+    return np.asarray(least_squares(missed, [1.2, 1.4]).x)
+
+
+def monomials(metal: tuple[float, ...]) -> tuple[Floats, Floats, Floats, float]:
+    """Return the monomials of PLAIN, STRAIN and HARDENING, and q (metals.py)."""
+    modulus, share, nu, isotropic, kinematic, sphere_yield = metal
+    hardening = isotropic + kinematic
+    u, v, m = 2 * share - 1, 4 * (nu - 0.3), 100 / modulus
+    t, k = max(1 / sphere_yield - 0.4, 0.0), kinematic / hardening if hardening else 0.0
+    plain = np.array([1, u, v, u * u, u * v, v * v, t, t * u, t * t, t * t * u, t * v])
+    strain, hardened = (
+        np.array([1, m, m * u, m * v, m * t]),
+        np.array([1, u, v, t, k, k * u, k * t]),
+    )
+    return plain, strain, hardened, hardening * (1 - nu**2) / share
+
+
+def columns(kind: int, x: Floats, metal: tuple[float, ...]) -> Floats:
+    """Return the functions of the fit times their monomials, (x, coefficients)."""
+    plain, strain, hardened, q = monomials(metal)
+    s, log = np.sqrt(x), np.log(x)
+    w = 1 - 1 / s
+    Q = q * s * w / (1 + 0.15 * q * s)
+    if kind == 0:
+        functions = [w**2, w**3, w**4, w**5, w**2 * log]
+        hard = [Q, Q * w, Q * log]
+    else:
+        functions, hard = [w**2, w**3, w**4, w**2 * log], [Q * w, Q * w**2, Q**2]
+    parts = [np.outer(f, plain) for f in functions]
+    parts.append(np.outer(w * s if kind == 0 else w**2 * s, strain))
+    return np.hstack(parts + [np.outer(f, hardened) for f in hard])
+
+
+def onset(kind: int, x: Floats) -> Floats:
+    """Return the part that all metals share, of first order at first yield."""
+    return ONSET[kind] * (1 - 1 / np.sqrt(x))
+
+
+def fitted(kind: int, runs: list[Run]) -> Floats:
+    """Return the coefficients of one of force, recovered and exponent."""
+    X = np.vstack([columns(kind, r.samples[kind].x, r.metals) for r in runs])
+    weights = np.hstack([r.samples[kind].weights for r in runs])
+    b = np.hstack([r.samples[kind].values - onset(kind, r.samples[kind].x) for r in runs]) * weights
+    A = X * weights[:, None]
+    scale = np.sqrt((A**2).mean(axis=0)) + 1e-12
+    A = A / scale
+    ridge = RIDGE[kind] * len(b) * np.eye(len(scale))
+    return np.asarray(np.linalg.solve(A.T @ A + ridge, A.T @ b) / scale)
+
+
+def errors(runs: list[Run], coefficients: list[Floats]) -> pd.DataFrame:
+    """Return the mean errors of each run's thirds of loading, and of what is recovered, in %."""
+    rows = []
+    for r in runs:
+        off = []
+        for kind, c in enumerate(coefficients):
+            sample = r.samples[kind]
+            fit = onset(kind, sample.x) + columns(kind, sample.x, r.metals) @ c
+            off.append(sample.values - fit)
+        force = [100 * part.mean() for part in np.array_split(off[0], 3)]
+        rows.append(
+            [*r.metals, r.samples[0].x.max(), *force, *(np.append(0, o)[-1] * 100 for o in off[1:])]
+        )
+    names = ["depth", "first", "second", "third", "recovered", "exponent"]
+    return pd.DataFrame(rows, columns=[*METALS, *names])
+
+
+def main() -> None:
+    """Fit, print the errors and write the coefficients."""
+    fine, runs = read()
+    kinds = range(3)
+    held_out = []
+    for part in range(PARTS):
+        kept = fine + [r for i, r in enumerate(runs) if i % PARTS != part]
+        c = [fitted(kind, kept) for kind in kinds]
+        held_out.append(errors(runs[part::PARTS], c))
+    c = [fitted(kind, fine + runs) for kind in kinds]
+    tables = {"fit": errors(runs, c), "held out": pd.concat(held_out), "fine": errors(fine, c)}
+    for name, table in tables.items():
+        numbers = table[["first", "second", "third", "recovered", "exponent"]]
+        summary = {"rms": np.sqrt((numbers**2).mean()), "largest": numbers.abs().max()}
+        print(name, pd.DataFrame(summary).T.round(2), sep="\n")
+    worst = tables["held out"].abs().sort_values("third").tail(8)
+    print(worst.round(3).to_string(index=False))
+    write(c)
+
+
+def write(coefficients: list[Floats]) -> None:
+    """Put the coefficients into metals.py."""
+    rows: dict[str, list[Floats]] = {"PLAIN": [], "STRAIN": [], "HARDENING": []}
+    for kind, c in enumerate(coefficients):
+        number = 11 * (5 if kind == 0 else 4)
+        rows["PLAIN"] += list(c[:number].reshape(-1, 11))
+        rows["STRAIN"].append(c[number : number + 5])
+        rows["HARDENING"] += list(c[number + 5 :].reshape(-1, 7))
+    text = MODULE.read_text(encoding="utf-8")
+    before, after = text.split("# fmt: off\n")[0], text.split("# fmt: on\n")[1]
+    lines = []
+    for name, matrix in rows.items():
+        lines.append(f"{name} = np.array([")
+        for row in matrix:
+            numbers = [f"{value:.5g}" for value in row]
+            lines += (
+                [f"    [{', '.join(numbers[:8])},", f"     {', '.join(numbers[8:])}],"]
+                if len(numbers) > 8
+                else [f"    [{', '.join(numbers)}],"]
+            )
+        lines.append("])")
+    body = "\n".join(lines)
+    MODULE.write_text(f"{before}# fmt: off\n{body}\n# fmt: on\n{after}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1 and sys.argv[1] == "solve":
+        solve(*map(int, sys.argv[2:]))
+    else:
+        main()

@@ -1,0 +1,94 @@
+"""The law `finite_element` over the metals of both bodies, beside the finite elements."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.integrate import cumulative_trapezoid
+from scipy.stats import qmc
+
+from impactlab.solver.contact import finite_element, metals
+from impactlab.solver.contact.stronge import yield_indentation
+
+DATA = pd.read_csv(Path(__file__).parents[3] / "benchmarks" / "indentation.csv")
+E, R, NU = 115e9, 0.035, 0.3
+BIAS = 0.004
+"""Share by which 20 elements over the radius make the force too small (contact_law.py)."""
+curve = getattr(finite_element.curve, "py_func", finite_element.curve)
+shape = getattr(metals.shape, "py_func", metals.shape)
+
+
+def shape_of(row):
+    hardening = row.isotropic + row.kinematic
+    kinematic = row.kinematic / hardening if hardening else 0.0
+    return shape(row.E_over_S, row.share, row.nu, hardening, kinematic, row.sphere_yield)
+
+
+def test_force_and_unloading_are_those_of_the_finite_elements():
+    """Force by thirds of each loading; of unloading, the force at every point over the largest."""
+    forces, unloading = [], []
+    for _, run in DATA.groupby("run"):
+        S_y, of = E / run.E_over_S.iloc[0], shape_of(run.iloc[0])
+        delta_y = yield_indentation(E, R, S_y)
+        F_y = 4.0 / 3.0 * E * np.sqrt(R) * delta_y**1.5
+        tops = {x: curve(x * delta_y, E, R, S_y, NU, of) for x in run.x_max.unique()}
+        loading = run[(run.x == run.x_max) & (run.x > 1.05)]
+        ours = np.array([tops[x][0] / F_y for x in loading.x])
+        missed = np.log(ours / loading.F) - BIAS
+        forces.append([part.mean() for part in np.array_split(missed.to_numpy(), 3)])
+        for x, F, top in run[run.x < run.x_max][["x", "F", "x_max"]].to_numpy():
+            F_m, K, delta_r, n = tops[top]
+            left = K * max(x * delta_y - delta_r, 0.0) ** n
+            largest = loading.F[loading.x == top]
+            if len(largest):
+                unloading.append(left / F_m - F / largest.iloc[0])
+    forces = np.array(forces)
+    assert len(forces) > 200
+    assert np.sqrt((forces**2).mean(axis=0)).max() < 0.011
+    assert abs(forces).max() < 0.05
+    assert np.sqrt(np.mean(np.square(unloading))) < 0.012
+
+
+def metals_within_the_data(number):
+    """Yield E*/S_y and the shapes of a Sobol sample over the range of the law."""
+    for u in qmc.Sobol(7, seed=3).random(number):
+        ratio = metals.LEAST_RATIO * (metals.LARGEST_RATIO / metals.LEAST_RATIO) ** u[0]
+        share = metals.LEAST_SHARE + (metals.LARGEST_SHARE - metals.LEAST_SHARE) * u[1]
+        hardening = metals.LARGEST_HARDENING * u[3] ** 2 * (u[4] > 0.2)
+        hardness = 1.0 / max(u[5], 0.05)
+        yield ratio, shape(ratio, share, 0.05 + 0.4 * u[2], hardening, u[6], hardness)
+
+
+def test_no_metal_creates_energy():
+    """What unloading gives back is below the work of loading, the dent between 0 and delta."""
+    for ratio, of in metals_within_the_data(256):
+        S_y = E / ratio
+        delta_y = yield_indentation(E, R, S_y)
+        deepest = max(1.5 * finite_element.LARGEST_DEPTH * R / delta_y, 3.0)
+        x = 1.0 + np.geomspace(1e-3, deepest, 160)
+        F, _, delta_r, n = np.array([curve(value * delta_y, E, R, S_y, NU, of) for value in x]).T
+        F, dent = F / (4.0 / 3.0 * E * np.sqrt(R) * delta_y**1.5), delta_r / delta_y
+        work = 0.4 + cumulative_trapezoid(np.append(1.0, F), np.append(1.0, x))
+        assert (np.diff(F) > 0.0).all()
+        assert (F * (x - dent) / (n + 1.0) <= work).all(), (ratio, of)
+        assert (dent >= 0.0).all()
+        assert (dent < x).all()
+        assert ((n >= 1.0) & (n <= 2.0)).all()
+
+
+def test_hardening_stiffens_and_a_softer_partner_gives_way():
+    """Isotropic and kinematic alike while loading; more Poisson's ratio, more constraint."""
+    delta = 30.0 * yield_indentation(E, R, 345e6)
+
+    def force(share=0.5, nu=0.3, hardening=0.0, kinematic=0.0, hardness=20.0):
+        of = shape(E / 345e6, share, nu, hardening, kinematic, hardness)
+        return curve(delta, E, R, 345e6, nu, of)[0]
+
+    plain = force()
+    assert force(hardening=0.02) > 1.02 * plain
+    assert force(hardening=0.02, kinematic=1.0) == pytest.approx(force(hardening=0.02), rel=0.02)
+    assert force(hardness=1.0) < 0.96 * plain
+    assert force(nu=0.05) < 0.96 * plain < 0.98 * force(nu=0.45)
