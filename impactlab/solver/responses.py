@@ -15,15 +15,13 @@ from impactlab.solver.contact.finite_element import (
     LARGEST_CIRCLE_ACROSS,
     LARGEST_HARDENING,
     LARGEST_POISSONS_RATIO,
-    LARGEST_RATIO,
     LARGEST_STIFFNESS,
     LEAST_HARDNESS,
     LEAST_POISSONS_RATIO,
-    LEAST_RATIO,
     LEAST_STIFFNESS,
 )
 from impactlab.solver.contact.history import Pair, energies
-from impactlab.solver.contact.metals import LARGEST_REVERSAL
+from impactlab.solver.contact.metals import LARGEST_RATIO, LARGEST_REVERSAL, LEAST_RATIO
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import is_damped, limit, radius
 from impactlab.solver.jit import compiled
@@ -113,7 +111,7 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
     reverses = pair.shape[26] * np.sqrt(x) > LARGEST_REVERSAL
     if hardening > LARGEST_HARDENING * case.beam_youngs_modulus or reverses:
         answer.remarks |= HARDENING_OUTSIDE_DATA
-    if case.sphere_yield_stress < LEAST_HARDNESS * pair.S_y:
+    if case.sphere_yield_stress < LEAST_HARDNESS * case.beam_yield_stress:
         answer.remarks |= SPHERE_YIELD_OUTSIDE_DATA
     stiffness = case.sphere_youngs_modulus / case.beam_youngs_modulus
     if not LEAST_STIFFNESS <= stiffness <= LARGEST_STIFFNESS:

@@ -24,8 +24,8 @@ from __future__ import annotations
 import math
 
 from impactlab.solver.beam import BeamGrid, half_spacings, make_grid
-from impactlab.solver.contact.history import PANELS, Pair, loading_work
-from impactlab.solver.contact.switch import curve, damping, is_damped
+from impactlab.solver.contact.history import PANELS, Pair, loading_work, pair_curve
+from impactlab.solver.contact.switch import damping, is_damped
 from impactlab.solver.jit import compiled
 from impactlab.solver.lumped import mid_span
 from impactlab.solver.responses import LARGEST_COMPLIANCE
@@ -49,10 +49,10 @@ def _stiffness(pair: Pair, delta: float) -> tuple[float, float]:
     force, which brings an energy of jump^2 dt^2/m; with dt^2/m = 4/k it is a share 4 jump^2/(k W)
     of the loading work W, of which 0.4 F delta is taken.
     """
-    F, K, delta_r, n = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
+    F, K, delta_r, n = pair_curve(pair, delta)
     small = 1e-4 * delta
-    after, _, _, _ = curve(pair.law, delta + small, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
-    before, _, _, _ = curve(pair.law, delta - small, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
+    after, _, _, _ = pair_curve(pair, delta + small)
+    before, _, _, _ = pair_curve(pair, delta - small)
     loading = min(after - F, F - before) / small
     start = K * max(delta - delta_r, 0.0) ** n
     unloading = n * start / (delta - delta_r)

@@ -29,7 +29,6 @@ from impactlab.solver.contact.metals import (
     LIKE_METALS,
     ONSET,
     ONSET_EXPONENT,
-    shape,
 )
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.jit import compiled
@@ -42,7 +41,6 @@ __all__ = [
     "curve",
     "limit",
     "radius",
-    "shape",
 ]
 LARGEST_DEPTH = 0.045
 """delta/R at which the data end."""

@@ -22,11 +22,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from impactlab.solver.contact.metals import LIKE_METALS
-from impactlab.solver.contact.switch import curve, shape
+from impactlab.solver.contact import LAWS, finite_element
+from impactlab.solver.contact.metals import LIKE_METALS, shape
+from impactlab.solver.contact.switch import curve
 from impactlab.solver.jit import compiled, inlined, linked
 from impactlab.solver.strain_rate import contact_rate, rate_factor
-from impactlab.solver.types import Record, Shape, record
+from impactlab.solver.types import Record, Shape, Unloading, record
+
+_OF_METALS = LAWS.index("finite_element")
+"""The law whose curve depends on more of the metals than the others'."""
 
 
 class Pair(NamedTuple):
@@ -101,17 +105,23 @@ def make_pair(case: Record) -> Pair:
         share, hardness, hardening = 1.0 - share, 1.0 / hardness, 0.0
     compliances = case.compliance, case.bending_compliance
     prestress = depth, case.stress_along, case.stress_across
-    metals = shape(case.contact, E / S_y, share, nu, hardening, kinematic, hardness)
+    metals = shape(E / S_y, share, nu, hardening, kinematic, hardness)
     return Pair(case.contact, E, R, S_y, nu, *compliances, prestress, metals)
+
+
+@compiled
+def pair_curve(pair: Pair, delta: float) -> Unloading:
+    """Return force and unloading curve of these bodies' law (see contact/hertz.py)."""
+    if pair.law == _OF_METALS:
+        return finite_element.curve(delta, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
+    return curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
 
 
 @compiled
 def load(contact: Record, pair: Pair, delta: float) -> None:
     """Move the furthest point of loading on to delta."""
     contact.delta_m = contact.approach_m = delta
-    contact.F_m, contact.K, contact.delta_r, contact.n = curve(
-        pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu, pair.shape
-    )
+    contact.F_m, contact.K, contact.delta_r, contact.n = pair_curve(pair, delta)
 
 
 @compiled
@@ -202,7 +212,7 @@ def load_to(contact: Record, pair: Pair, approach: float) -> None:
     missed_before = before + pair.compliance * F_before - approach
     delta, step, missed = approach - pair.compliance * F_before, 1.0, 1.0
     for _ in range(_ITERATIONS):
-        F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
+        F, _, _, _ = pair_curve(pair, delta)
         missed = delta + pair.compliance * F - approach
         if delta == before or missed == missed_before:
             break
@@ -259,13 +269,13 @@ def loading_work(pair: Pair, start: float, stop: float, panels: int = PANELS) ->
     in which delta^1.5 is smooth at zero; the panels keep a regime limit of a law from costing
     accuracy. Where delta snaps, the force is that of the spring.
     """
-    F, _, _, _ = curve(pair.law, start, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
+    F, _, _, _ = pair_curve(pair, start)
     total, furthest = 0.0, start + pair.compliance * F
     for panel in range(panels):
         for point, weight in _GAUSS:
             root = (panel + point) / panels
             delta = start + root * root * (stop - start)
-            F, _, _, _ = curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
+            F, _, _, _ = pair_curve(pair, delta)
             borne = delta + pair.compliance * F
             if borne < furthest:
                 F = (furthest - delta) / pair.compliance

@@ -146,7 +146,10 @@ def shape(
     )
 
 
-LIKE_METALS: Shape = tuple(
-    map(float, getattr(shape, "py_func", shape)(333.0, 0.5, 0.3, 0.0, 0.0, np.inf))
+LIKE_METALS: Shape = (
+    *PLAIN[:, 0].tolist(),
+    *(STRAIN[:, 0] + STRAIN[:, 1] * 100.0 / 333.0).tolist(),
+    *HARDENING[:, 0].tolist(),
+    *(0.0, 0.0),
 )
 """Of a flat and an elastic sphere of the same modulus, E*/S_y = 333, which do not harden."""

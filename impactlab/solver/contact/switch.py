@@ -7,25 +7,18 @@ process.
 from __future__ import annotations
 
 from importlib import import_module
-from inspect import signature
 from typing import Any
 
 import numpy as np
 
 from impactlab.solver.contact import LAWS
-from impactlab.solver.contact.metals import LIKE_METALS
 from impactlab.solver.jit import compiled, linked
-from impactlab.solver.types import Shape, Unloading
+from impactlab.solver.types import Unloading
 
 
 @compiled
 def _no_curve(law: int, *of: float) -> Unloading:
     return np.nan, np.nan, np.nan, 1.5
-
-
-@compiled
-def _no_shape(law: int, *of: float) -> Shape:
-    return LIKE_METALS
 
 
 @compiled
@@ -57,11 +50,10 @@ def is_damped(law: int) -> bool:
 def _link(attribute: str, number: int, fallback: Any) -> Any:
     """Return a function that calls this attribute of law `number`, or else `fallback`."""
     chosen = getattr(_FILES[number], attribute)
-    numbers = len(signature(getattr(chosen, "py_func", chosen)).parameters)
 
-    def ask(law: int, *of: Any) -> Any:
+    def ask(law: int, *of: float) -> Any:
         if law == number:
-            return chosen(*of[:numbers])
+            return chosen(*of)
         return fallback(law, *of)
 
     # numba knows functions by their names and would take one made here for another
@@ -69,12 +61,10 @@ def _link(attribute: str, number: int, fallback: Any) -> Any:
     return linked(ask)
 
 
-curve, limit, radius = _no_curve, _no_limit, _no_radius
-shape, damping = _no_shape, _no_damping
+curve, limit, radius, damping = _no_curve, _no_limit, _no_radius, _no_damping
 for _number in reversed(range(len(LAWS))):  # the first laws are asked for first
     curve, limit = _link("curve", _number, curve), _link("limit", _number, limit)
     radius = _link("radius", _number, radius)
-    shape = _link("shape", _number, shape) if hasattr(_FILES[_number], "shape") else shape
     damping = _link("damping", _number, damping) if _number in DAMPED else damping
 """curve(law, delta, E, R, S_y, nu) -> (F, K, delta_r, n); limit(law, E, R, S_y, nu) and
 radius(law, delta, E, R, S_y, nu) -> m: those of law number `law`, NaN for a number of no law;

@@ -18,9 +18,34 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from impactlab.model.impact import Impact
-from impactlab.solver.contact import metals
-from impactlab.solver.contact.finite_element import LARGEST_DEPTH
 from impactlab.verification.solutions import hertz as hertz_forms
+
+LARGEST_DEPTH = 0.045
+"""d/R at which the finite elements of `finite_element` end."""
+TERMS = (
+    (0.093255, 0.20494, -0.34784),
+    (0.28334, -0.44147, 1.1425),
+    (-0.31857, 0.82359, -1.1581),
+    (1.2106, -0.5161, 0.22173),
+    (-0.39257, -0.0084085, 0.017197),
+    (0.1537, 0.50266, -0.12399),
+    (-0.38456, -0.69868, 0.3285),
+    (-0.091066, 0.23628, -0.224),
+    (0.075879, -0.014846, 0.0027341),
+    (-0.19489, 0.2878, -0.26966),
+    (-0.29993, -0.71714, 0.68643),
+    (-0.10357, 0.62073, -0.20364),
+    (0.10576, -0.036611, -0.039822),
+)
+"""Of the fit to finite elements, for bodies of one modulus of which one yields: constant, linear and
+quadratic in 4 (nu - 0.3). Force: of w^2 to w^5 and w^2 ln x; of what is recovered, and of the
+exponent: of w^2 to w^4 and w^2 ln x; w = 1 - 1/sqrt(x)."""
+STRAINS = (
+    (-0.0036185, -0.0026656, -0.0015554),
+    (-0.0026393, 0.0027798, 0.010786),
+    (-0.0034783, 0.013218, 0.0091847),
+)
+"""Of w sqrt(x) (force), w^2 sqrt(x): constant, times 100 S/E, and that times 4 (nu - 0.3)."""
 
 # Loading: F(d, E, R, S, nu) in N.
 
@@ -61,8 +86,8 @@ def _fit(
 ) -> tuple[float, float, list[float], list[float]]:
     """Return 1 - 1/sqrt(x), sqrt(x) and the coefficients for bodies of one modulus."""
     root, v = math.sqrt(d / R) / (0.825 * math.pi * S / E), 4.0 * (nu - 0.3)
-    terms = [row[0] + row[2] * v + row[5] * v**2 for row in metals.PLAIN.tolist()]
-    strain = [row[0] + (row[1] + row[3] * v) * 100.0 * S / E for row in metals.STRAIN.tolist()]
+    terms = [c + linear * v + quadratic * v**2 for c, linear, quadratic in TERMS]
+    strain = [c + (flow + constraint * v) * 100.0 * S / E for c, flow, constraint in STRAINS]
     return 1.0 - 1.0 / root, root, terms, strain
 
 
@@ -163,8 +188,8 @@ def finite_unloading(d: float, F: float, E: float, R: float, S: float, nu: float
     shares, exponents = (
         math.fsum(map(math.prod, zip(terms[i : i + 4], powers, strict=True))) for i in (5, 9)
     )
-    share = 1.0 + metals.ONSET * w + shares + strain[1] * w**2 * root
-    n = 1.5 + metals.ONSET_EXPONENT * w + exponents + strain[2] * w**2 * root
+    share = 1.0 + 0.33 * w + shares + strain[1] * w**2 * root
+    n = 1.5 - 0.14 * w + exponents + strain[2] * w**2 * root
     return F, d - share * d_y * math.sqrt(F / hertz(d_y, E, R, S, nu)), n
 
 

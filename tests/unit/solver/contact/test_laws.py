@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from impactlab.solver.contact import CONTACT_LAWS, LAWS
+from impactlab.solver.contact import CONTACT_LAWS, LAWS, finite_element, metals
 from impactlab.solver.contact.switch import curve, limit
 from impactlab.verification.solutions.contact_laws import LAWS as REFERENCE
 from impactlab.verification.solutions.contact_laws import LawOnHalfSpace, joints
@@ -34,7 +34,11 @@ def depths(law, bodies, number=2001):
 
 
 def along(law, bodies, deltas):
-    """(F, K, delta_r, n), each of the shape of `deltas`."""
+    """(F, K, delta_r, n), each of the shape of `deltas`; of bodies of one modulus."""
+    if law == "finite_element":
+        E, _, S_y, nu = bodies
+        of = metals.shape(E / S_y, 0.5, nu, 0.0, 0.0, np.inf)
+        return np.array([finite_element.curve(delta, *bodies, of) for delta in deltas]).T
     return np.array([curve(LAWS.index(law), delta, *bodies) for delta in deltas]).T
 
 

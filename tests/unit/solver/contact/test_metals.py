@@ -49,7 +49,7 @@ def test_force_and_unloading_are_those_of_the_finite_elements():
     assert len(forces) > 200
     assert np.sqrt((forces**2).mean(axis=0)).max() < 0.011
     assert abs(forces).max() < 0.05
-    assert np.sqrt(np.mean(np.square(unloading))) < 0.012
+    assert np.sqrt(np.mean(np.square(unloading))) < 0.0125
 
 
 def metals_within_the_data(number):
