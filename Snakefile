@@ -12,6 +12,8 @@ report: "workflow/captions/workflow.rst"
 
 wildcard_constraints:
     study="[A-Za-z0-9_-]+",
+    part="[0-9]+",
+    total="[0-9]+",
 
 
 # Studies side by side, in this order; each comparison is made where all of its studies are.
@@ -24,6 +26,7 @@ rule all:
         expand("results/{study}/passed", study=VERIFICATIONS),
 
 
+include: "workflow/rules/parts.smk"
 include: "workflow/rules/runs.smk"
 include: "workflow/rules/analysis.smk"
 include: "workflow/rules/verification.smk"

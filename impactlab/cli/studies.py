@@ -17,14 +17,18 @@ FILES = {
     "workflow": "workflow",
     "profiles/local": "profiles/default",  # which Snakemake finds by itself
     "profiles/slurm": "profiles/slurm",
+    "profiles/parts": "profiles/parts",
     "studies/velocity.yaml": "studies/velocity.yaml",
     "studies/material.yaml": "studies/material.yaml",
     "docs/studies.md": "docs/studies.md",  # to which comments of these files point
     "docs/contact_laws.md": "docs/contact_laws.md",
+    "docs/parts.md": "docs/parts.md",
     "docs/scaling.md": "docs/scaling.md",
 }
 """The repository's own, which the wheel brings along (see pyproject.toml), and their places."""
-_ELSEWHERE = r"!?\[([^\]]*)\]\((?!https?:|#|studies\.md|scaling\.md|contact_laws\.md)[^)]*\)"
+_ELSEWHERE = (
+    r"!?\[([^\]]*)\]\((?!https?:|#|studies\.md|parts\.md|scaling\.md|contact_laws\.md)[^)]*\)"
+)
 _ENVIRONMENT = """# For snakemake --software-deployment-method conda
 channels: [conda-forge, nodefaults]
 dependencies: ["python>=3.11,<3.14", pip, pip: ["impactlab[workflow]=={version}"]]
@@ -38,7 +42,7 @@ Needed: `pip install 'impactlab[workflow]'`. Then, in this folder:
 
 A study is a file in `studies/`: copy one, rename it and change it. Both commands resume where they
 were interrupted, and do again what a changed file asks for. `impactlab -h` lists the other
-commands; `docs/studies.md` lists every key. For clusters: `profiles/slurm/`, `docs/scaling.md`.
+commands; `docs/studies.md` lists every key. For clusters: `profiles/`, `docs/parts.md`.
 """
 
 

@@ -70,7 +70,7 @@ def run_part(
         check_unclaimed(study, folder / "runs.nc")
     _check_parts(study)
     declared = _of_parts(study, priced(study, folder, workers, force, tell, part[1]))
-    files = PartFiles.at(place or folder / PARTS, _identity(declared))
+    files = PartFiles.at(place or folder / PARTS, identity(declared))
     solve_part(declared, files, *part, workers)
 
 
@@ -84,7 +84,7 @@ def merge(study: AnyStudy, path: Path, place: str = "", *, replace: bool = False
         check_unclaimed(study, path)
     _check_parts(study)
     declared = _of_parts(study, resolved(study, path.parent))
-    files = PartFiles.at(place or path.with_name(PARTS), _identity(declared))
+    files = PartFiles.at(place or path.with_name(PARTS), identity(declared))
     runs = merged(declared, files)
     with dask.config.set(scheduler="synchronous"):  # HDF5 is not for two threads
         write_runs(runs.assign_attrs(study_file=study_file(study, path.parent)), path)
@@ -104,8 +104,11 @@ def _of_parts(study: AnyStudy, declared: AnyStudy | None) -> AnyStudy:
     return declared
 
 
-def _identity(study: AnyStudy) -> str:
-    """Return a hash of what the runs depend on; title, responses and analyses do not matter."""
+def identity(study: AnyStudy) -> str:
+    """Return the name of a study's folder of blocks, a hash of what its runs depend on.
+
+    Title, responses and analyses do not matter.
+    """
     labels = design(study, 0, 1)
     name = str(labels.attrs["solver"])
     form = {

@@ -26,7 +26,7 @@ from impactlab.files import (
     write_csv,
     write_netcdf,
 )
-from impactlab.study import CALIBRATION, REFINEMENT, RESOLUTION, SHARDS, TRIALS
+from impactlab.study import CALIBRATION, PARTS, REFINEMENT, RESOLUTION, SHARDS, TRIALS
 from impactlab.study.ownership import check_unclaimed, same_runs, study_file, write_runs
 from impactlab.study.schema.declarations import (
     AnyStudy,
@@ -236,6 +236,8 @@ def removable(studies: Path, results: Path) -> Iterator[dict[Path, str]]:
             locks.enter_context(locked(shards))
             home = results / shards.relative_to(results).parts[0]
             reasons |= _stale(studies / f"{home.name}.yaml", shards, home)
+        for parts in sorted(results.glob(f"*/{PARTS}")):
+            reasons |= _stale_parts(studies / f"{parts.parent.name}.yaml", parts)
         yield reasons
 
 
@@ -243,19 +245,35 @@ def _stale(file: Path, shards: Path, home: Path) -> dict[Path, str]:
     """Return a study's files to remove: none where it has no file; home: its folder of results."""
     from impactlab.study.design import design, stages
     from impactlab.study.inventory import removable_files
-    from impactlab.study.schema.readers import read_study
 
     if not file.is_file():
         return {}
     if shards != home / SHARDS:
         return removable_files(shards, None)
+    declared = _declared_in(file, home)
+    return {} if declared is None else removable_files(shards, list(stages(design(declared))))
+
+
+def _stale_parts(file: Path, parts: Path) -> dict[Path, str]:
+    """Return the blocks of parts to remove; those that a process may write now all stay."""
+    from impactlab.study.parts import identity
+
+    if not file.is_file() or (declared := _declared_in(file, parts.parent)) is None:
+        return {}
+    reason, needed = "belongs to another text of the study, or another solver", identity(declared)
+    return {path: reason for path in sorted(parts.glob("*/*.npz")) if path.parent.name != needed}
+
+
+def _declared_in(file: Path, home: Path) -> AnyStudy | None:
+    """Return the resolved study of a file; None where its results are another study's."""
+    from impactlab.study.schema.readers import read_study
+
     study = read_study(file)
     try:
         check_unclaimed(study, home / "runs.nc")
     except ValueError:  # the runs are another study's
-        return {}
-    declared = resolved(study, home)
-    return {} if declared is None else removable_files(shards, list(stages(design(declared))))
+        return None
+    return resolved(study, home)
 
 
 def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = None) -> None:

@@ -20,11 +20,11 @@ from impactlab.verification.outcomes import packed
 ROOT = Path(__file__).parents[2]
 
 
-def snakemake(folder, *args, studies="smoke,checks"):
+def snakemake(folder, *args, studies="smoke,checks", config=()):
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--config", f"studies={studies}"]
+    command = [sys.executable, "-m", "snakemake", "--cores", "2"]
     return subprocess.run(
-        [*command, *args],
+        [*command, "--config", f"studies={studies}", *config, *args],
         cwd=folder,
         env=os.environ | {"PATH": path},
         capture_output=True,
@@ -137,3 +137,16 @@ def test_a_changed_study_reruns_alone(folder):
         study.write_text(before)
     assert "results/checks/findings.nc" in planned
     assert "results/smoke/" not in planned.replace("results/smoke/report.html", "")
+
+
+@pytest.mark.slow
+def test_parts_make_the_same_runs(folder):
+    """Last, for it makes runs.nc of the smoke study anew."""
+    results = folder / "results" / "smoke"
+    before = xr.load_dataset(results / "runs.nc")
+    target = "results/smoke/runs.nc"
+    done = snakemake(folder, "--quiet", "all", "--", target, studies="smoke", config=["parts=2"])
+    assert done.returncode == 0, done.stderr
+    assert len([*results.glob("parts/*/*-of-2.npz")]) == 2
+    assert xr.load_dataset(results / "runs.nc").equals(before)
+    assert "0 of them solved before" in (results / "logs" / "part-1-of-2.log").read_text()

@@ -107,6 +107,12 @@ def solving(wildcards):
     return code(*SOLVER, "study/**/*.py", *deciding, *solid)
 
 
+def parts(wildcards):
+    """Return what tells that the parts of a study are solved; a growing sample has none."""
+    total = 0 if has(wildcards.study, "growing") else PARTS
+    return [f"results/{wildcards.study}/parts/{part}-of-{total}" for part in range(1, total + 1)]
+
+
 PACKAGE = Path("impactlab")  # of the checkout; elsewhere that which is installed
 if not PACKAGE.is_dir() and (spec := importlib.util.find_spec("impactlab")):
     PACKAGE = Path(spec.origin).parent
@@ -115,6 +121,7 @@ SOLVER = (*MODEL, "simulate.py", "solver/**/*.py", "jit.py")
 FINDINGS = tuple(f"verification/{name}.py" for name in ("finding", "outcomes"))
 REPORTING = ("variables.py", "figures/**/*.py", "report/**/*.py", "report/templates/*")
 DESCRIBED = read_studies()
+PARTS = int(config.get("parts", 0))
 STUDIES = asked_studies(config.get("studies"))
 PAPER = [*sorted(name for name in DESCRIBED if name.startswith("fig")), "witness", "witness_mesh"]
 CHECKS = [study for study in DESCRIBED if has(study, "checks")]

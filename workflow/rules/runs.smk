@@ -7,6 +7,7 @@ rule runs:
     input:
         code=solving,
         study="studies/{study}.yaml",
+        parts=parts,  # which it takes over
     output:
         "results/{study}/runs.nc",
     log:

@@ -146,8 +146,11 @@ def test_other_texts_and_kernels_have_files_of_their_own(folder):
     study = folder / "studies" / "grid.yaml"
     study.write_text(GRID.replace("title: Grid", "title: Another"))
     assert merge(folder, "grid").returncode == 0
+    assert "need every shard" in done("clean", cwd=folder).stdout
     study.write_text(GRID.replace("velocity: [0.5", "velocity: [0.6"))
     assert "holds no solved runs" in merge(folder, "grid").stderr
+    done("clean", "--yes", cwd=folder)
+    assert not blocks(folder, "grid")
 
 
 def test_from_a_design_and_with_an_automatic_discretisation(folder):
