@@ -213,6 +213,13 @@ def block_rows(shape: tuple[int, ...]) -> int:
     return max(1, _BLOCK // max(1, math.prod(shape)))
 
 
+def row_blocks(variable: xr.Variable) -> Iterator[Any]:
+    """Yield the values of a variable in blocks of rows, which memory holds one by one."""
+    rows = block_rows(variable.shape[1:])
+    for start in range(0, len(variable), rows):
+        yield variable[start : start + rows].values
+
+
 @contextmanager
 def opened(path: Path, *contents: str, indexed: bool = True) -> Iterator[xr.Dataset]:
     """Give a dataset whose file is open, its values neither read nor checked.

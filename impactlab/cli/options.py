@@ -47,7 +47,7 @@ def _study_file(value: Path) -> Path:
         return value
     from impactlab.files import opened
 
-    with opened(path) as stored:
+    with opened(path, indexed=False) as stored:
         file = str(stored.attrs.get("study_file", ""))
     if not file:
         raise ValueError(f"{path}: names no study file: name it instead, studies/NAME.yaml")

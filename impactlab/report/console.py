@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from rich.console import Console
 from rich.filesize import decimal
 from rich.markup import escape
@@ -78,12 +79,17 @@ def print_studies(rows: Iterable[tuple[str, str, str]]) -> None:
 
 def print_solved(path: Path) -> None:
     """Print one line about solved runs: their file and number, and the range of a response."""
-    from impactlab.files import opened  # late: it loads xarray
+    from impactlab.files import opened, row_blocks  # late: it loads xarray
 
-    with opened(path) as runs:
-        failed = int(((runs["status"] & FAILED) != 0).sum()) if "status" in runs else 0
+    with opened(path, indexed=False) as runs:
+        blocks = row_blocks(runs["status"].variable) if "status" in runs else ()
+        failed = sum(int(np.count_nonzero(block & FAILED)) for block in blocks)
         name = next(name for name in runs.data_vars if name not in FLAGS)
-        low, high = float(runs[name].min()), float(runs[name].max())
+        ends = [
+            (np.fmin.reduce(block, None), np.fmax.reduce(block, None))
+            for block in row_blocks(runs[name].variable)
+        ]
+        low, high = float(np.fmin.reduce(ends)[0]), float(np.fmax.reduce(ends)[1])
         size, units = runs[name].size, str(runs[name].attrs["units"])
     text = f"{path}: {size:,} run{'' if size == 1 else 's'}, {failed:,} without an answer"
     if not math.isnan(low):

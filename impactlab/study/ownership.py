@@ -55,7 +55,7 @@ def check_unclaimed(study: Declared, path: Path, file: str | None = None) -> Non
     """
     file = study_file(study, path.parent) if file is None else file
     attrs: dict[str, Any] = {}
-    with suppress(OSError), opened(path) as stored:
+    with suppress(OSError), opened(path, indexed=False) as stored:
         attrs = stored.attrs
     if not attrs or (file and attrs.get("study_file") == file) or same_runs(study, attrs):
         return
@@ -116,6 +116,6 @@ def write_runs(runs: xr.Dataset, path: Path) -> None:
 
 def _identity(path: Path, attribute: str = "") -> str:
     """Return the identity of a dataset's file, or an attribute; "" where it cannot be read."""
-    with suppress(OSError), opened(path) as stored:
+    with suppress(OSError), opened(path, indexed=False) as stored:
         return str(stored.attrs.get(attribute, "")) if attribute else identity(stored)
     return ""

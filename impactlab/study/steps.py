@@ -202,7 +202,7 @@ def status(study: AnyStudy, folder: Path) -> Status | None:
         return None
     last, written = None, f"{runs}: not written yet"
     if runs.exists():
-        with opened(runs, "runs") as dataset:
+        with opened(runs, "runs", indexed=False) as dataset:
             attrs, size = dataset.attrs, prod(run_shape(dataset)[1])
         written = f"{runs}: {size:,} runs"
         if not same_runs(study, attrs):

@@ -72,7 +72,7 @@ def blocks(folder):
 
 def numbers_of(message):
     """Return the parts that a message names as an array of Slurm's."""
-    (listed,) = re.findall(r"--array=([\d,-]+),? then", message)
+    (listed,) = re.findall(r"--array=([\d,-]*\d), then", message)
     ranges = [[int(end) for end in entry.split("-")] for entry in listed.split(",")]
     return [number for ends in ranges for number in range(ends[0], ends[-1] + 1)]
 
