@@ -179,6 +179,7 @@ def main(meshes: Sequence[float]) -> None:
     for name, impact in (*chosen(), *designed()):
         rows.append(row(name, impact, meshes or MESHES))
         table = pd.DataFrame(rows)
+        table = table.drop(columns="3-D", errors="ignore")
         table.to_csv(ROOT / "docs" / "agreement_metals.csv", index=False, float_format="%.4g")
     print(table.rename(columns=RESPONSES).round(2).to_string(index=False))
 

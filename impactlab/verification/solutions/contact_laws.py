@@ -87,7 +87,8 @@ def _fit(
     """Return 1 - 1/sqrt(x), sqrt(x) and the coefficients for bodies of one modulus."""
     root, v = math.sqrt(d / R) / (0.825 * math.pi * S / E), 4.0 * (nu - 0.3)
     terms = [c + linear * v + quadratic * v**2 for c, linear, quadratic in TERMS]
-    strain = [c + (flow + constraint * v) * 100.0 * S / E for c, flow, constraint in STRAINS]
+    m = 100.0 / min(max(E / S, 60.0), 1500.0)
+    strain = [c + (flow + constraint * v) * m for c, flow, constraint in STRAINS]
     return 1.0 - 1.0 / root, root, terms, strain
 
 

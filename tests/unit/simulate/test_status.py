@@ -88,7 +88,7 @@ def test_an_input_outside_the_data_of_the_contact_law_is_named(cause, inside, ou
         assert remarks(outside | {"contact_compliance": "half_space"}) == 0
         return
     assert remarks(outside, contact="stronge") & OUTSIDE_DATA == 0
-    assert remarks(outside, velocity=1e-4) & OUTSIDE_DATA == 0
+    assert remarks(outside, velocity=1e-5) & OUTSIDE_DATA == 0
 
 
 def test_words_of_remarks_have_the_limits_of_the_law():
