@@ -1,4 +1,4 @@
-# make study   the main studies, from their files to results/index.html (3 minutes on two cores)
+# make study   the main studies, from their files to results/index.html (4 minutes on two cores)
 # make paper   the figures and statements of the paper, in results/paper (about 20 minutes on two idle
 #              cores, 35 of processor time, nearly all of it for the 3-D model)
 # make all     every study, the large ones too, and the paper (one to two hours)
