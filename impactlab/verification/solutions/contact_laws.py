@@ -37,9 +37,9 @@ TERMS = (
     (-0.10357, 0.62073, -0.20364),
     (0.10576, -0.036611, -0.039822),
 )
-"""Of the fit to finite elements for bodies of one modulus, one of which yields: constant, linear and
-quadratic in 4 (nu - 0.3). Force: of w^2 to w^5 and w^2 ln x; of what is recovered, and of the
-exponent: of w^2 to w^4 and w^2 ln x; w = 1 - 1/sqrt(x)."""
+"""Of the fit to finite elements for bodies of one modulus: constant, linear and quadratic in
+4 (nu - 0.3). Force: of w^2 to w^5 and w^2 ln x; of what is recovered, and of the exponent: of w^2
+to w^4 and w^2 ln x; w = 1 - 1/sqrt(x)."""
 STRAINS = (
     (-0.0036185, -0.0026656, -0.0015554),
     (-0.0026393, 0.0027798, 0.010786),
