@@ -227,7 +227,7 @@ def merge(
     ] = "",
     replace: Replace = False,
 ) -> None:
-    """Put the parts of a study together, which `impactlab run --part` has solved.
+    """Put the parts of a study together.
 
     Names the parts that are missing or damaged; otherwise writes the runs.nc of one process.
     """

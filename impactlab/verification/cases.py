@@ -39,9 +39,16 @@ def elastic(impact: Impact) -> Impact:
 
 
 def rigid_backed(velocity: float, contact: str) -> Impact:
-    """Return the paper's sphere on a beam of enormous mass (E* as it is), without gravity."""
+    """Return the paper's sphere on a beam of enormous mass and its own stiffness, without gravity.
+
+    E* is the paper's. The law of the finite elements is written anew for bodies of one modulus.
+    """
     impact = paper_impact(velocity, contact)
-    return replace(with_beam_material(impact, density=7.8e9), gravity=0.0)
+    metals = impact.sphere.material, impact.beam.material
+    stiffness = 2.0 / sum(1.0 / metal.youngs_modulus for metal in metals)
+    metal = replace(metals[0], youngs_modulus=stiffness)
+    impact = replace(impact, sphere=replace(impact.sphere, material=metal))
+    return replace(with_beam_material(impact, density=7.8e9, youngs_modulus=stiffness), gravity=0.0)
 
 
 def aluminium_impact() -> Impact:

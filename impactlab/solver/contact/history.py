@@ -97,7 +97,7 @@ def make_pair(case: Record) -> Pair:
     share, hardness = E * of_beam, case.sphere_yield_stress / S_y
     kinematic = case.beam_kinematic_hardening_modulus
     hardening = case.beam_isotropic_hardening_modulus + kinematic
-    kinematic /= max(hardening, 1.0)
+    kinematic = kinematic / hardening if hardening > 0.0 else 0.0
     hardening /= case.beam_youngs_modulus
     depth = case.beam_depth if case.contact_prestress > 0 else 0.0
     if S_y > case.sphere_yield_stress:

@@ -14,9 +14,10 @@ from impactlab.study.design import design
 
 def test_more_runs_than_possible_are_refused(refused, grid, sample):
     many = {"start": 1, "stop": 2, "number": 10_000}
-    varied = {"sampling.parameters": {"velocity": many, "gravity": many}}
-    refused(grid(varied), "sampling", "100,000,000 runs")
-    refused(sample({"sampling.base_samples": 2**22}), "sampling", f"{2**22 * 6:,} runs")
+    few = {"start": 0.7, "stop": 0.8, "number": 100}
+    varied = {"sampling.parameters": {"velocity": many, "gravity": many, "beam_span": few}}
+    refused(grid(varied), "sampling", "10,000,000,000 runs")
+    refused(sample({"sampling.base_samples": 2**29}), "sampling", f"{2**29 * 6:,} runs")
 
 
 @pytest.mark.parametrize("name", ["nodes", "points", "rule", "beam_span", "beam_depth"])
