@@ -100,7 +100,7 @@ class Sample(NamedTuple):
 
 
 class Run(NamedTuple):
-    """What one solve says: of the force, of what is recovered, and of the exponent."""
+    """Samples of one solve: force, recovered indentation and exponent of unloading."""
 
     metals: tuple[float, ...]
     samples: tuple[Sample, Sample, Sample]

@@ -1,4 +1,4 @@
-"""What the two metals make of the curve of `finite_element`.
+"""Coefficients of the curve of `finite_element` for two metals.
 
 The curve (finite_element.py) is linear in 25 functions of the indentation. Their coefficients are
 polynomials in

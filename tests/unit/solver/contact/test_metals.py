@@ -63,7 +63,7 @@ def metals_within_the_data(number):
 
 
 def test_no_metal_creates_energy():
-    """What unloading gives back is below the work of loading, the dent between 0 and delta."""
+    """Unloading gives back less than the work of loading; the dent is between 0 and delta."""
     for ratio, of in metals_within_the_data(256):
         S_y = E / ratio
         delta_y = yield_indentation(E, R, S_y)
