@@ -44,7 +44,7 @@ BIAS = 0.004
 """Share by which the force of the sample is too small."""
 WEIGHT = 6.0
 """Of the finer data."""
-RIDGE = 1e-6, 1e-4, 1e-4
+RIDGE = 2e-5, 1e-4, 1e-4
 PARTS = 10
 ONSET = 0.0, metals.ONSET, metals.ONSET_EXPONENT
 Floats = np.ndarray[Any, np.dtype[np.float64]]

@@ -20,14 +20,14 @@ from scipy.optimize import brentq
 from impactlab.model.impact import Impact
 from impactlab.verification.solutions import hertz as hertz_forms
 
-LARGEST_DEPTH = 0.045
-"""d/R at which the finite elements of `finite_element` end."""
+LARGEST_DEPTH = 0.0194
+"""d/R beyond which the force of `finite_element` is linear."""
 TERMS = (
-    (0.093255, 0.20494, -0.34784),
-    (0.28334, -0.44147, 1.1425),
-    (-0.31857, 0.82359, -1.1581),
-    (1.2106, -0.5161, 0.22173),
-    (-0.39257, -0.0084085, 0.017197),
+    (0.028489, 0.11461, -0.068269),
+    (0.13012, 0.059459, 0.12445),
+    (0.33334, 0.00065729, 0.034316),
+    (0.49175, -0.097335, -0.21846),
+    (-0.34482, -0.0083723, 0.015356),
     (0.1537, 0.50266, -0.12399),
     (-0.38456, -0.69868, 0.3285),
     (-0.091066, 0.23628, -0.224),
@@ -41,7 +41,7 @@ TERMS = (
 4 (nu - 0.3). Force: of w^2 to w^5 and w^2 ln x; of what is recovered, and of the exponent: of w^2
 to w^4 and w^2 ln x; w = 1 - 1/sqrt(x)."""
 STRAINS = (
-    (-0.0036185, -0.0026656, -0.0015554),
+    (-0.0056079, -0.003135, -0.0018332),
     (-0.0026393, 0.0027798, 0.010786),
     (-0.0034783, 0.013218, 0.0091847),
 )
