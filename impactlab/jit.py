@@ -372,5 +372,13 @@ def _compile_elsewhere(kernels: Sequence[tuple[KernelCache, str]]) -> None:
                 check=False,
             )
         log.debug("%s precompiled, exit code %s: %s", names, done.returncode, done.stderr)
+        if done.returncode:
+            log.warning(
+                "another process that compiled kernels (%s) failed with exit code %s, so this one "
+                "compiles them, and may link parts that do not belong together: check the answers "
+                "with IMPACTLAB_PLAIN_NUMBA=1",
+                names,
+                done.returncode,
+            )
     except OSError as error:
         log.debug("kernels cannot be precompiled: %s", error)

@@ -227,6 +227,13 @@ def test_kernels_of_one_call_are_compiled_together(tmp_path, monkeypatch):
     assert sorted(started) == [(group, [f"call({name})" for name in group]) for group in names]
 
 
+def test_a_process_that_dies_compiling_is_reported(tmp_path, caplog):
+    kernel = Kernel(impactlab.jit.KernelCache(tmp_path, "kernel"))
+    impactlab.jit.precompile({kernel: "import os; os._exit(3)"})
+    (record,) = [r for r in caplog.records if r.levelname == "WARNING"]
+    assert "(kernel) failed with exit code 3" in record.getMessage()
+
+
 def test_compiling_is_announced_once_by_all_processes(tmp_path, capsys, monkeypatch):
     """Again after the kernels are gone, or after a while."""
     for _ in range(7):
