@@ -27,7 +27,7 @@ _COMMANDS = {
     "status": "impactlab.cli.studies:status",
     "analyse": "impactlab.cli.results:analyse",
     "predict": "impactlab.cli.results:predict",
-    "calibrate": "impactlab.cli.solve:calibrate",
+    "calibrate": "impactlab.cli.calibrate:calibrate",
     "verify": "impactlab.cli.solve:verify",
     "figures": "impactlab.cli.results:figures",
     "animate": "impactlab.cli.animate:animate",
