@@ -102,6 +102,7 @@ site: docs $(MADE)-dev
 bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py
 	$(IN_VENV) python tests/benchmarks/batch.py
+	$(IN_VENV) python tests/benchmarks/one_run.py
 	$(IN_VENV) python tests/benchmarks/schemes.py
 	$(IN_VENV) python tests/benchmarks/sobol_coverage.py
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
@@ -38,6 +39,7 @@ from impactlab.variables import (
     HISTORIES,
     PROFILES,
     RESPONSES,
+    VARIABLES,
     answer_variables,
     described,
     provenance,
@@ -130,22 +132,52 @@ def run_dataset(
 
     For checks, which scale units, and for runs that end early on purpose.
     """
-    import xarray as xr  # late, here and below: `solve` does without, and it is slow to load
-
     grid = discretisation.resolved([impact.beam_model])
     cases = case_table(impact, grid, duration=duration)
     answers = solve(cases, samples=samples, profiles=True)
-    times = {"time": np.linspace(0.0, duration, samples)}
+    axes = {"time": np.linspace(0.0, duration, samples)}
     if frames:
-        times["field_time"], fields = _fields_over_time(cases, frames)
+        axes["field_time"], fields = _fields_over_time(cases, frames)
         answers |= fields
-    dataset = xr.Dataset(
-        answer_variables(answers, tuple(RESPONSES), ()),
-        coords=times | profile_coordinates(impact, grid),
-        attrs=provenance(),
-    )
+    axes |= profile_coordinates(impact, grid)
+    variables = answer_variables(answers, tuple(RESPONSES), ())
     fixed = flatten(impact, grid) | {"sphere_mass": impact.sphere.total_mass, "duration": duration}
-    return described(dataset.squeeze(drop=True).assign_coords(fixed))
+    blank = _blank_run(
+        tuple(variables),
+        tuple((name, values.tobytes()) for name, values in axes.items()),
+        tuple(fixed),
+        impact.contact,
+    )
+    dataset = blank.copy()
+    dataset.attrs = provenance()
+    values = {name: data[0] for name, (_, data) in variables.items()} | fixed
+    for name, value in values.items():
+        dataset.variables[name].data = value
+    return dataset
+
+
+@functools.lru_cache(maxsize=8)
+def _blank_run(
+    answers: tuple[str, ...],
+    axes: tuple[tuple[str, bytes], ...],
+    fixed: tuple[str, ...],
+    contact: str,
+) -> xr.Dataset:
+    """Return the dataset of a run before its numbers are in: a copy is sooner made than another.
+
+    answers, fixed: names of data variables and of scalar coordinates. axes: by name, float64 as
+    bytes, which tell one axis from another and are read-only, since copies share them.
+    """
+    import xarray as xr  # late, here and below: `solve` does without, and it is slow to load
+
+    points = {name: np.frombuffer(values) for name, values in axes}
+    variables = {}
+    for name in answers:
+        dims = VARIABLES[name].dims if name in VARIABLES else ()
+        shape = tuple(points[dim].size for dim in dims)
+        variables[name] = dims, np.broadcast_to(np.nan, shape)
+    scalars = dict.fromkeys(fixed, np.nan) | {"contact": contact}
+    return described(xr.Dataset(variables, points | scalars))
 
 
 def _fields_over_time(

@@ -287,17 +287,18 @@ def provenance() -> dict[str, str]:
     """Return where numbers come from: versions, source revision, time and class of processor."""
     return {
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
-        **_of_this_process(Path(__file__).resolve().parent),
+        **_of_this_process(__file__),
         "Conventions": "CF-1.11",
     }
 
 
 @cache  # what a process has loaded stays as it is
-def _of_this_process(source: Path) -> dict[str, str]:
-    """Return versions, processor and revision of the source tree that holds `source`.
+def _of_this_process(file: str) -> dict[str, str]:
+    """Return versions, processor and revision of the source tree that holds `file`.
 
     The revision is a commit, marked if the tree has changes; "release" outside a checkout.
     """
+    source = Path(file).resolve().parent
     packages = ", ".join(f"{name} {version(name)}" for name in _PACKAGES.split())
     info = Path("/proc/cpuinfo")
     model = re.search("^model name.*?: *(.*?) *$", info.read_text() if info.exists() else "", re.M)

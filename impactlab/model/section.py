@@ -204,9 +204,9 @@ def fibre_table(cases: Any) -> Floats:
     each stands for its mirror image, too. Cases of fewer points leave the end of their rows at 0.
     """
     table = np.zeros((cases.size, 2, cases["points"].max(initial=0) // 2))
-    for number, points in np.unique([cases["rule"], cases["points"]], axis=1).T:
+    for number, points in set(zip(cases["rule"].tolist(), cases["points"].tolist(), strict=True)):
         alike = (cases["rule"] == number) & (cases["points"] == points)
-        z, area = section_of(cases[alike]).fibres(*integration_rule(RULES[number], int(points)))
+        z, area = section_of(cases[alike]).fibres(*integration_rule(RULES[number], points))
         half = points // 2
         table[alike, 0, :half] = z[:, : -half - 1 : -1]
         table[alike, 1, :half] = 2.0 * area[:, : -half - 1 : -1]

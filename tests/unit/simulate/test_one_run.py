@@ -121,6 +121,28 @@ def test_answers_do_not_depend_on_the_samples(run):
         assert coarse[name].values == pytest.approx(run[name].values[::5], rel=1e-9, abs=1e-15)
 
 
+def test_a_run_takes_nothing_from_runs_before():
+    grid = il.Discretisation(nodes=21)
+
+    def solved(velocity, contact="hertz", span=0.78):
+        paper = il.paper_impact(velocity, contact)
+        return il.simulate(replace(paper, beam=replace(paper.beam, span=span)), grid, duration=0.01)
+
+    alone = solved(1.0)
+    kept = alone.copy(deep=True)
+    with pytest.raises(ValueError, match="read-only"):
+        alone.time.values[1] = 7.0
+    alone.contact_force.values[:] = 0.0
+    alone.velocity.attrs["units"] = "furlong"
+    alone["x"] = 2.0 * alone.x
+    others = solved(2.0), solved(1.0, "stronge"), solved(1.0, span=0.8)
+    assert [float(run.velocity) for run in others] == [2.0, 1.0, 1.0]
+    assert [float(run.x[-1]) for run in others] == [0.78, 0.78, 0.8]
+    assert kept.contact.attrs["source"] != others[1].contact.attrs["source"]
+    xr.testing.assert_identical(solved(1.0).drop_attrs(), kept.drop_attrs())
+    assert solved(1.0).velocity.attrs == kept.velocity.attrs
+
+
 @pytest.mark.parametrize("duration", [0.0, -1e-3, np.nan, np.inf, None, "1 m"])
 def test_a_wrong_duration_is_refused(duration):
     with pytest.raises(ValueError, match=r"^simulate\.duration = "):
