@@ -9,9 +9,10 @@ import pytest
 from scipy.optimize import brentq
 
 import impactlab as il
+from impactlab.model.case_table import case_table
 from impactlab.simulate import run_dataset
 from impactlab.solver.contact import LAWS, axis_lift, finite_element
-from impactlab.solver.contact.history import CONTACT, Pair, load
+from impactlab.solver.contact.history import CONTACT, Pair, load, make_pair
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.verification.solutions.hertz import effective_modulus
 
@@ -63,15 +64,17 @@ def test_a_softer_sphere_takes_the_dent_and_lifts_nothing():
 @pytest.mark.long  # a kernel of its own is compiled
 def test_permanent_indentation_of_a_strip_is_dent_and_lift():
     impact = replace(il.corrected_impact(5.0), contact_prestress="ignored")
-    run = run_dataset(impact, il.Discretisation(nodes=101), duration=0.25e-3)
+    grid = il.Discretisation(nodes=101)
+    run = run_dataset(impact, grid, duration=0.25e-3)
     bodies = effective_modulus(impact), impact.sphere.radius, impact.beam.material.yield_stress, nu
+    metals = make_pair(case_table(impact, grid, duration=0.25e-3)[0]).shape
 
     def missed(delta):
-        return finite_element.curve(delta, *bodies)[0] - run.peak_force.item()
+        return finite_element.curve(delta, *bodies, metals)[0] - run.peak_force.item()
 
     delta = brentq(missed, 1e-5, 1e-3)
     share = finite_element.radius(delta, *bodies) / (0.5 * impact.beam.depth)
     raised = 1.0 + axis_lift.plastic_lift(delta / yield_indentation(*bodies[:3]), share)
-    dent = finite_element.curve(delta, *bodies)[2]
+    dent = finite_element.curve(delta, *bodies, metals)[2]
     assert run.permanent_indentation.item() == pytest.approx(dent * raised, rel=1e-6)
     assert raised > 1.005
