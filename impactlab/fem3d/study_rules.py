@@ -6,7 +6,7 @@ from impactlab.analysis.convergence.axes import Axis, Growth
 from impactlab.fem3d.wing import MODEL, SIZES, SOLID
 from impactlab.methods.grid import Grid
 from impactlab.solver import outputs
-from impactlab.study.schema.consistency import Reasons, key_of, size_keys, values_of
+from impactlab.study.schema.consistency import Reasons, size_keys
 from impactlab.study.schema.declarations import StudyFile
 
 ELEMENT_SIZE = Axis(
@@ -44,7 +44,3 @@ def reasons(file: StudyFile) -> Reasons:
     for entry in outputs.RESPONSES:
         if entry.beam_models_only and entry.name in file.responses:
             yield "responses", f"{entry.name} is not available with {model}: leave it out"
-    name = "beam_rate_coefficient"
-    if any(values_of(file.sampling, name, file.impact.beam.material.rate_coefficient)):
-        reason = f"must be 0 with {model}: the beam models alone have a strain rate"
-        yield key_of(name, file.sampling), reason

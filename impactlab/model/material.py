@@ -30,23 +30,30 @@ class Material:
     kinematic_hardening_modulus : Quantity, default 0
         Slope of the back stress against plastic strain, in Pa.
     rate_coefficient : Quantity, default 0
-        Coefficient D, in 1/s; 0 stands for a yield stress that does not depend on the strain rate.
+        Coefficient D of Cowper and Symonds, in 1/s; 0 for a yield stress without their law.
     rate_exponent : Quantity, default 5
-        Exponent q, at least 1.
+        Exponent q of Cowper and Symonds, at least 1.
+    rate_sensitivity : Quantity, default 0
+        Coefficient C of Johnson and Cook; 0 for a yield stress without their law.
+    reference_rate : Quantity, default 1
+        Strain rate of Johnson and Cook up to which the yield stress is the static one, in 1/s.
 
     Raises
     ------
     ValueError
-        If a value is not physical; the message names the field.
+        If a value is not physical, or both laws of the strain rate are set; the message names the
+        field.
 
     Notes
     -----
-    At the plastic strain rate p' the yield stress is 1 + (p'/D)^(1/q) times the static one, in the
-    beam's fibres and its contact (solver/strain_rate.py).
+    At the plastic strain rate p' the yield stress is 1 + (p'/D)^(1/q) times the static one, after
+    Cowper and Symonds, or 1 + C ln(p'/reference_rate) times after Johnson and Cook, in the beam's
+    fibres and its contact (solver/strain_rate.py), and in 3-D finite elements.
 
     References
     ----------
     Cowper and Symonds (1957), Brown University, Applied Mathematics Report 28 (as remembered).
+    Johnson and Cook (1983), 7th International Symposium on Ballistics, 541 (as remembered).
 
     Examples
     --------
@@ -64,6 +71,8 @@ class Material:
     kinematic_hardening_modulus: SI[float] = SI("Pa", 0.0)
     rate_coefficient: SI[float] = SI("s-1", 0.0)
     rate_exponent: SI[float] = SI("1", 5.0)
+    rate_sensitivity: SI[float] = SI("1", 0.0)
+    reference_rate: SI[float] = SI("s-1", 1.0)
 
     def __post_init__(self) -> None:
         for field in ("density", "youngs_modulus", "yield_stress"):
@@ -71,9 +80,14 @@ class Material:
         for field in ("isotropic_hardening_modulus", "kinematic_hardening_modulus"):
             modulus = number("Material", field, getattr(self, field))
             require(modulus >= 0, "Material", field, modulus, "must not be negative")
-        rate = number("Material", "rate_coefficient", self.rate_coefficient)
-        message = "must be above zero, or 0 for no dependence on the strain rate"
-        require(rate >= 0, "Material", "rate_coefficient", self.rate_coefficient, message)
+        positive("Material", "reference_rate", self.reference_rate)
+        for field in ("rate_coefficient", "rate_sensitivity"):
+            rate = number("Material", field, getattr(self, field))
+            message = "must be above zero, or 0 for no dependence on the strain rate"
+            require(rate >= 0, "Material", field, rate, message)
+        single = (self.rate_coefficient == 0) | (self.rate_sensitivity == 0)
+        message = "is Johnson and Cook's, beside Cowper and Symonds' rate_coefficient: set one to 0"
+        require(single, "Material", "rate_sensitivity", self.rate_sensitivity, message)
         exponent = number("Material", "rate_exponent", self.rate_exponent)
         message = "must be at least 1"
         require(exponent >= 1, "Material", "rate_exponent", self.rate_exponent, message)

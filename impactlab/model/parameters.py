@@ -51,6 +51,8 @@ _MATERIAL = (
     ("kinematic_hardening_modulus", "Pa", "kinematic hardening modulus"),
     ("rate_coefficient", "s-1", "Cowper-Symonds coefficient"),
     ("rate_exponent", "1", "Cowper-Symonds exponent"),
+    ("rate_sensitivity", "1", "Johnson-Cook rate coefficient"),
+    ("reference_rate", "s-1", "Johnson-Cook reference strain rate"),
 )
 _ROWS = (
     ("velocity", "m s-1", "impact velocity", "impact.velocity"),

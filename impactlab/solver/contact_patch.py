@@ -27,7 +27,7 @@ from __future__ import annotations
 import math
 
 from impactlab.solver.beam import COPIES, BeamGrid, BeamState, mirror
-from impactlab.solver.contact.history import Pair
+from impactlab.solver.contact.history import Pair, yield_stress
 from impactlab.solver.contact.switch import radius
 from impactlab.solver.jit import compiled
 from impactlab.solver.types import Record
@@ -36,7 +36,8 @@ from impactlab.solver.types import Record
 @compiled
 def contact_radius(contact: Record, pair: Pair, F: float) -> float:
     """Return the radius (m) of the circle of contact under the force F (N), damping apart."""
-    a = radius(pair.law, contact.delta_m, pair.E, pair.R, pair.S_y, pair.nu)
+    S_y = yield_stress(contact, pair)
+    a = radius(pair.law, contact.delta_m, pair.E, pair.R, S_y, pair.nu)
     return float(a * min((F - contact.damping) / contact.F_m, 1.0) ** (1.0 / 3.0))
 
 

@@ -21,8 +21,8 @@ EVENTS = record(
     """
 )
 """At the last two steps: indentation delta, delta_before (m), mid-span deflection w, w_before
-(m), force F (N); F_before (N) of damped laws. t_peak (s): time of the largest force, which is that
-of the largest indentation but for damped laws; w_max (m). contacts: number begun;
+(m), force F (N); F_before (N) of laws with damping or strain rate. t_peak (s): time of the largest
+force, which is that of the largest indentation but for these; w_max (m). contacts: number begun;
 touching: 1 or 0; t_touch: when this contact began, t_first_end: when the first one ended (NaN: not
 yet), pauses shorter than SHORT_PAUSE of it left out, time_in_contact of the ended ones (s); v_exit
 (m/s): the sphere's velocity when the last contact ended; v_s, v_mid (m/s): of sphere and mid-span
@@ -54,7 +54,7 @@ def between_steps(
 ) -> Any:
     """Return the contact force of a law's two functions, a peak just passed between the steps.
 
-    damped: also for laws with damping.
+    damped: also for laws with damping, or of the strain rate.
     """
 
     @inlined
@@ -62,15 +62,18 @@ def between_steps(
         contact: Record, events: Record, pair: Pair, delta: float, t: float, dt: float
     ) -> float:
         """Return the contact force (N) at time t."""
+        tracked = damped and (is_damped(pair.law) or pair.rate.D > 0.0)
         falls = delta < events.delta and events.delta >= events.delta_before
         if falls and events.delta == contact.approach_m:
             offset, peak = vertex(events.delta_before, events.delta, delta)
+            largest = contact.peak_force
             load_to(contact, pair, peak)
-            if not (damped and is_damped(pair.law)):
+            if not tracked or (pair.rate.D > 0.0 and contact.peak_force > largest):
                 events.t_peak = t + (offset - 1.0) * dt
         F = force(contact, pair, delta)
         if damped and is_damped(pair.law):
             F = damped_force(contact, pair, F, delta, events.delta, events.delta_before, dt)
+        if tracked:
             _note_peak(contact, events, F, t, dt)
         return F
 

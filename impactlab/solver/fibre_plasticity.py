@@ -27,7 +27,7 @@ from impactlab.solver.section import (
     stored_energy,
     tangent,
 )
-from impactlab.solver.strain_rate import CowperSymonds
+from impactlab.solver.strain_rate import RateLaw
 from impactlab.solver.types import ONE, TWO, Array, Index
 
 
@@ -187,7 +187,7 @@ def begin_tangents(
 def flow(
     plastic_state: PlasticState,
     section: FibreSection,
-    rate: CowperSymonds,
+    rate: RateLaw,
     i: Index,
     kappa: float,
     dt: float,
@@ -213,7 +213,7 @@ def _yield(
     beam: BeamState,
     plastic_state: PlasticState,
     section: FibreSection,
-    rate: CowperSymonds | None,
+    rate: RateLaw | None,
     grid: BeamGrid,
     i: Index,
     kappa: float,

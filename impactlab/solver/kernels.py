@@ -194,6 +194,7 @@ _MODAL = (_kernel("modal", modal.MODEL), _kernel("extended_modal", modal.MODEL, 
 def is_extended(cases: Array) -> Array:
     """Return which cases need an extended kernel; of what, see _kernel."""
     extended = (cases["load"] == CONTACT_PATCH) | (cases["beam_rate_coefficient"] > 0.0)
+    extended |= cases["beam_rate_sensitivity"] > 0.0
     extended |= (cases["width_inertia"] > 0.0) | (cases["contact_prestress"] > 0)
     for law in DAMPED:
         extended |= cases["contact"] == law

@@ -13,7 +13,7 @@ import numpy as np
 
 from impactlab.solver import event_tracker
 from impactlab.solver.contact import history as contact_history
-from impactlab.solver.contact import prestress
+from impactlab.solver.contact import prestress, rate
 from impactlab.solver.contact_patch import contact_radius
 from impactlab.solver.fibre_plasticity import catch_up
 from impactlab.solver.jit import compiled, inlined
@@ -147,11 +147,18 @@ def _contact(model: BeamModel, extended: bool) -> Callable[..., tuple[float, flo
             elastic = plastic.M_0[grid.mid] / section.stiffness - mid_curvature(state, now)
             contact.shift = pair.bending * elastic
             approach = delta - contact.shift
+        if extended and pair.rate.D > 0.0:
+            rate.strain(contact, pair, approach, grid.dt)
         if moments is not None and pair.prestress[0] > 0.0:
             along, across = moments(state, now)
             contact.stress_along = case.stress_per_moment * along
             contact.stress_across = case.stress_per_moment * across
             F = prestressed_force(contact, events, pair, approach, t, grid.dt)
+        elif extended and pair.rate.D > 0.0:
+            furthest, before = contact.approach_m, rate.curve_of(contact)
+            F = force(contact, events, pair, approach, t, grid.dt)
+            if contact.approach_m > furthest:
+                rate.dissipate(contact, before)
         else:
             F = force(contact, events, pair, approach, t, grid.dt)
         if beneath is not None and lift is not None:

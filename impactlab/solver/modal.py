@@ -66,7 +66,7 @@ from impactlab.solver.modes import (
 )
 from impactlab.solver.section import FibreSection, bend
 from impactlab.solver.state import BeamModel, Flight, State
-from impactlab.solver.strain_rate import CowperSymonds
+from impactlab.solver.strain_rate import RateLaw
 from impactlab.solver.types import Record
 
 _STEPS_UNSEEN = 8.0
@@ -98,7 +98,7 @@ def _look_at_all(modes: Modes, plastic: PlasticState, mid: int) -> None:
 def _bend(
     plastic: PlasticState,
     section: FibreSection,
-    rate: CowperSymonds | None,
+    rate: RateLaw | None,
     i: int,
     kappa: float,
     dt: float,

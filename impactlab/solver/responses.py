@@ -20,7 +20,7 @@ from impactlab.solver.contact.finite_element import (
     LEAST_POISSONS_RATIO,
     LEAST_STIFFNESS,
 )
-from impactlab.solver.contact.history import Pair, energies
+from impactlab.solver.contact.history import Pair, energies, yield_stress
 from impactlab.solver.contact.metals import LARGEST_RATIO, LARGEST_REVERSAL, LEAST_RATIO
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import is_damped, limit, radius
@@ -58,14 +58,14 @@ def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) ->
     """Fill in force, indentation and contact times; flag those beyond the contact law's range."""
     recovers = LARGEST_COMPLIANCE * (contact.delta_m - contact.delta_r)
     if (
-        contact.delta_m > limit(pair.law, pair.E, pair.R, pair.S_y, pair.nu)
+        contact.delta_m > limit(pair.law, pair.E, pair.R, yield_stress(contact, pair), pair.nu)
         or -pair.compliance * contact.n * contact.F_m > recovers
     ):
         answer.status |= OUTSIDE_CONTACT_LAW
     if events.delta == contact.approach_m:
         answer.status |= INDENTATION_STILL_GROWING
     else:
-        tracked = pair.prestress[0] > 0.0 or is_damped(pair.law)
+        tracked = pair.prestress[0] > 0.0 or is_damped(pair.law) or pair.rate.D > 0.0
         answer.peak_force = contact.peak_force if tracked else contact.F_m
         answer.time_of_peak_force = events.t_peak
         bends = pair.bending != 0.0
@@ -94,16 +94,17 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
 
     Those of materials count where the contact yields, with the law, a strip or prestress.
     """
+    S_y = yield_stress(contact, pair)
     corrected = case.contact_prestress > 0 or case.width_inertia > 0.0
     if corrected or pair.compliance != 0.0:
-        a = radius(pair.law, contact.delta_m, pair.E, pair.R, pair.S_y, pair.nu)
+        a = radius(pair.law, contact.delta_m, pair.E, pair.R, S_y, pair.nu)
         largest = min(LARGEST_CIRCLE * case.beam_depth, LARGEST_CIRCLE_ACROSS * case.beam_width)
         if a > 0.5 * largest:
             answer.remarks |= CONTACT_CIRCLE_OUTSIDE_DATA
-    x = contact.delta_m / yield_indentation(pair.E, pair.R, pair.S_y)
+    x = contact.delta_m / yield_indentation(pair.E, pair.R, S_y)
     if not (x > 1.0 and (corrected or pair.law == _FINITE_ELEMENT)):
         return
-    if not LEAST_RATIO <= pair.E / pair.S_y <= LARGEST_RATIO:
+    if not LEAST_RATIO <= pair.E / S_y <= LARGEST_RATIO:
         answer.remarks |= YIELD_RATIO_OUTSIDE_DATA
     if not LEAST_POISSONS_RATIO <= case.beam_poissons_ratio <= LARGEST_POISSONS_RATIO:
         answer.remarks |= POISSONS_RATIO_OUTSIDE_DATA
@@ -111,7 +112,7 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
     reverses = pair.shape[26] * np.sqrt(x) > LARGEST_REVERSAL
     if hardening > LARGEST_HARDENING * case.beam_youngs_modulus or reverses:
         answer.remarks |= HARDENING_OUTSIDE_DATA
-    if case.sphere_yield_stress < LEAST_HARDNESS * case.beam_yield_stress:
+    if case.sphere_yield_stress < LEAST_HARDNESS * max(case.beam_yield_stress, S_y):
         answer.remarks |= SPHERE_YIELD_OUTSIDE_DATA
     stiffness = case.sphere_youngs_modulus / case.beam_youngs_modulus
     if not LEAST_STIFFNESS <= stiffness <= LARGEST_STIFFNESS:

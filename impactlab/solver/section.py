@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver.jit import allocating, compiled, over_fibres
-from impactlab.solver.strain_rate import CowperSymonds, overstress_ratio
+from impactlab.solver.strain_rate import RateLaw, overstress, rate_law
 from impactlab.solver.types import ELASTIC, Array, Record
 
 FAR = 1e300
@@ -54,7 +54,7 @@ class FibreSection(NamedTuple):
     stiffness: float
     yield_curvature: float
     moduli: Moduli
-    rate: CowperSymonds | None
+    rate: RateLaw | None
 
 
 class Room(NamedTuple):
@@ -112,7 +112,7 @@ def with_rate(section: FibreSection, case: Record) -> FibreSection:
         section.stiffness,
         section.yield_curvature,
         section.moduli,
-        CowperSymonds(case.beam_rate_coefficient, case.beam_rate_exponent),
+        rate_law(case),
     )
 
 
@@ -178,7 +178,7 @@ def bend(
 @compiled
 def bend_at_rate(
     section: FibreSection,
-    rate: CowperSymonds,
+    rate: RateLaw,
     kappa: float,
     before: float,
     dt: float,
@@ -191,15 +191,14 @@ def bend_at_rate(
     Returns as `bend`, and the work of the overstress (J/m). The new elastic interval is the static
     one, which does not hold kappa as long as the section flows.
     """
-    z, lever, (D, q) = section.z, section.lever, rate
+    z, lever = section.z, section.lever
     E, S_y, H_i, H_k = section.moduli
     M_0, kappa_min, kappa_max, work = 0.0, -FAR, FAR, 0.0
     for j in range(z.size):
         strain, slipped = plastic_strain[i, j], peeq[i, j]
         Y, trial = S_y + H_i * slipped, -E * z[j] * kappa - (E + H_k) * strain
         if abs(trial) > Y * (1.0 + _ROUND_OFF):
-            s = overstress_ratio(abs(trial), Y, H_i, E + H_k, D * dt, q)
-            slip = D * dt * s**q
+            s, slip = overstress(abs(trial), Y, H_i, E + H_k, dt, rate)
             over = max(abs(trial + E * z[j] * (kappa - before)) - Y, 0.0)
             work += 0.5 * (over + s * (Y + H_i * slip)) * slip * section.area[j]
             strain, slipped = strain + math.copysign(slip, trial), slipped + slip

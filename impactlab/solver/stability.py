@@ -25,11 +25,14 @@ import math
 
 from impactlab.solver.beam import BeamGrid, half_spacings, make_grid
 from impactlab.solver.contact.history import PANELS, Pair, loading_work, pair_curve
-from impactlab.solver.contact.switch import damping, is_damped
+from impactlab.solver.contact.rate import MODULUS, STRAIN
+from impactlab.solver.contact.stronge import yield_indentation
+from impactlab.solver.contact.switch import damping, is_damped, radius
 from impactlab.solver.jit import compiled
 from impactlab.solver.lumped import mid_span
 from impactlab.solver.responses import LARGEST_COMPLIANCE
 from impactlab.solver.section import FibreSection
+from impactlab.solver.strain_rate import rate_factor
 from impactlab.solver.types import MODAL, SPRING_MASS, TIMOSHENKO, Record
 
 _GROWTH, _COARSE_GROWTH = 1.25, 2.0
@@ -38,6 +41,8 @@ _SAFETY = 2.0
 _LARGEST_SHARE = 0.01
 """Of the loading work, in energy that a jump at the turn may bring at the critical time step."""
 _LUMPED_STEPS = 1000.0
+_SMALL = 1e-4
+"""Share of an argument by which differences are taken."""
 
 
 @compiled
@@ -49,15 +54,32 @@ def _stiffness(pair: Pair, delta: float) -> tuple[float, float]:
     force, which brings an energy of jump^2 dt^2/m; with dt^2/m = 4/k it is a share 4 jump^2/(k W)
     of the loading work W, of which 0.4 F delta is taken.
     """
-    F, K, delta_r, n = pair_curve(pair, delta)
-    small = 1e-4 * delta
-    after, _, _, _ = pair_curve(pair, delta + small)
-    before, _, _, _ = pair_curve(pair, delta - small)
+    F, K, delta_r, n = pair_curve(pair, delta, pair.S_y)
+    small = _SMALL * delta
+    after, _, _, _ = pair_curve(pair, delta + small, pair.S_y)
+    before, _, _, _ = pair_curve(pair, delta - small, pair.S_y)
     loading = min(after - F, F - before) / small
     start = K * max(delta - delta_r, 0.0) ** n
     unloading = n * start / (delta - delta_r)
+    if pair.rate.D > 0.0:  # the yield stress grows with the strain, at most as a fibre's (rate.py)
+        little = _SMALL * pair.S_y
+        harder, _, _, _ = pair_curve(pair, delta, pair.S_y + little)
+        softer, _, _, _ = pair_curve(pair, delta, pair.S_y - little)
+        a = radius(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
+        wider = radius(pair.law, delta + small, pair.E, pair.R, pair.S_y, pair.nu)
+        growth = MODULUS * STRAIN * pair.E * (wider - a) / (pair.R * small)
+        loading += growth * min(harder - F, F - softer) / little
     turning = 10.0 * (F - start) ** 2 / (_LARGEST_SHARE * F * delta)
     return max(loading, unloading, turning), F
+
+
+@compiled
+def _hardened(case: Record, pair: Pair) -> Pair:
+    """Return the pair with the yield stress at the largest strain rate, that at first yield."""
+    delta_y = yield_indentation(pair.E, pair.R, pair.S_y)
+    strain_rate = STRAIN * case.velocity / (2.0 * math.sqrt(pair.R * delta_y))
+    S_y = min(pair.S_y * rate_factor(strain_rate, pair.rate), pair.hardest)
+    return Pair(pair.law, pair.E, pair.R, S_y, *pair[4:])
 
 
 @compiled
@@ -78,6 +100,7 @@ def _extremes(case: Record, pair: Pair, growth: float) -> tuple[float, float]:
     delta = 0.1 * (2.5 * energy / hertz) ** 0.4
     work, panels = 0.0, 1 if case.scheme == MODAL else PANELS
     k_c, F = _stiffness(pair, delta)
+    hard = _hardened(case, pair)
     while work < energy + case.sphere_mass * case.gravity * delta and delta < pair.R:
         k, F_next = _stiffness(pair, growth * delta)
         if growth > _GROWTH:
@@ -88,6 +111,8 @@ def _extremes(case: Record, pair: Pair, growth: float) -> tuple[float, float]:
             work += 0.5 * pair.compliance * (F_next * F_next - F * F)
         delta *= growth
         k_c, F = max(k_c, k), F_next
+        if pair.rate.D > 0.0:
+            k_c = max(k_c, _stiffness(hard, delta)[0])
     v, c = case.velocity, 0.0
     if is_damped(pair.law):  # which grows with the force
         c = damping(pair.law, F, delta, v, pair.E, pair.R, pair.S_y, pair.nu) / v

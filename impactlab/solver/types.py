@@ -44,7 +44,7 @@ CASE = record(
     mass_per_length rotary_inertia shear_stiffness stress_per_moment
     beam_density beam_youngs_modulus beam_poissons_ratio beam_yield_stress
     beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus
-    beam_rate_coefficient beam_rate_exponent courant
+    beam_rate_coefficient beam_rate_exponent beam_rate_sensitivity beam_reference_rate courant
     compliance bending_compliance stress_along stress_across
     width_stiffness width_inertia width_lever width_twist axis_compliance axis_bending
     """,

@@ -47,7 +47,15 @@ from impactlab.fem3d.solver.hexahedron import (
     times,
     volume,
 )
-from impactlab.fem3d.solver.material import ALONG, PAST_ROWS, PEEQ, STRESS_ROWS, Metal, advance
+from impactlab.fem3d.solver.material import (
+    ALONG,
+    PAST_ROWS,
+    PEEQ,
+    STRESS_ROWS,
+    Metal,
+    Rate,
+    advance,
+)
 
 Four = tuple[Vector, Vector, Vector, Vector]
 
@@ -71,6 +79,7 @@ def add_forces(
     count: int,
     full: bool,
     metal: Metal,
+    rate: Rate | None,
     nodes: Array,
     rows: Array,
     state: Array,
@@ -85,11 +94,12 @@ def add_forces(
     """Take a step's motion into `state`, and add the nodal forces that answer it.
 
     pieces: the first and the one past the last, see blocks_of. count: of all elements, which the
-    last block may repeat. full: with eight integration points. nodes, and the rows of forces that
-    are theirs: (blocks, 8 W). x: (n, 3) in m, at the step's end; v: (n, 3) in m/s, at its middle;
-    dt in s. state: (blocks, rows W), rows FULL_ROWS or ROWS. past: (blocks, points PAST_ROWS W),
-    apart, since without hardening only yielding needs it. works: (pieces, 3 W), sums in J by lane.
-    forces: (., 3) in N. s: scratch, (SCRATCH W,).
+    last block may repeat. full: with eight integration points. rate: None for a yield stress that
+    does not depend on the strain rate. nodes, and the rows of forces that are theirs: (blocks,
+    8 W). x: (n, 3) in m, at the step's end; v: (n, 3) in m/s, at its middle; dt in s. state:
+    (blocks, rows W), rows FULL_ROWS or ROWS. past: (blocks, points PAST_ROWS W), apart, since
+    without hardening only yielding needs it. works: (pieces, 3 W), sums in J by lane. forces:
+    (., 3) in N. s: scratch, (SCRATCH W,).
     """
     hardens = metal[5] > 0.0 or metal[6] > 0.0
     for piece in range(pieces[0], pieces[1]):
@@ -97,9 +107,9 @@ def add_forces(
         for block in range(first, end):
             gather(s, nodes[block], x, v)
             if full:
-                _answer_full(s, state[block], past[block], dt, metal, hardens)
+                _answer_full(s, state[block], past[block], dt, metal, hardens, rate)
             else:
-                _answer(s, state[block], past[block], dt, metal, hardens)
+                _answer(s, state[block], past[block], dt, metal, hardens, rate)
             for row in range(3):
                 for lane in range(min(W, count - block * W)):
                     works[piece, row * W + lane] += s[(_DONE + row) * W + lane]
@@ -113,21 +123,35 @@ def blocks_of(blocks: int, piece: int, pieces: int) -> tuple[int, int]:
 
 
 @inlined
-def _answer(s: Array, state: Array, past: Array, dt: float, metal: Metal, hardens: bool) -> None:
+def _answer(
+    s: Array,
+    state: Array,
+    past: Array,
+    dt: float,
+    metal: Metal,
+    hardens: bool,
+    rate: Rate | None,
+) -> None:
     """Update a block of elements with one integration point, and store its forces in `s`."""
     yielding = 0
     if hardens:  # for the compiler, a literal: half of the memory is left alone without
         for lane in range(W):
-            yielding += _element(s, state, past, lane, dt, metal, True)
+            yielding += _element(s, state, past, lane, dt, metal, True, rate)
     else:
         for lane in range(W):
-            yielding += _element(s, state, past, lane, dt, metal, False)
+            yielding += _element(s, state, past, lane, dt, metal, False, rate)
     _yield(s, past, 0, yielding)
 
 
 @inlined
 def _answer_full(
-    s: Array, state: Array, past: Array, dt: float, metal: Metal, hardens: bool
+    s: Array,
+    state: Array,
+    past: Array,
+    dt: float,
+    metal: Metal,
+    hardens: bool,
+    rate: Rate | None,
 ) -> None:
     """Update a block of fully integrated elements, and store its forces in `s`."""
     for lane in range(W):
@@ -139,10 +163,10 @@ def _answer_full(
         place, yielding = (xi, eta, zeta), 0
         if hardens:
             for lane in range(W):
-                yielding += _point(s, state, past, corner, lane, place, dt, metal, True)
+                yielding += _point(s, state, past, corner, lane, place, dt, metal, True, rate)
         else:
             for lane in range(W):
-                yielding += _point(s, state, past, corner, lane, place, dt, metal, False)
+                yielding += _point(s, state, past, corner, lane, place, dt, metal, False, rate)
         _yield(s, past, corner, yielding)
     for lane in range(W):
         nodal(s, lane, _load(s, _T, lane))
@@ -172,7 +196,14 @@ def _dilate(
 
 @inlined
 def _element(
-    s: Array, state: Array, past: Array, lane: int, dt: float, metal: Metal, hardens: bool
+    s: Array,
+    state: Array,
+    past: Array,
+    lane: int,
+    dt: float,
+    metal: Metal,
+    hardens: bool,
+    rate: Rate | None,
 ) -> int:
     """Update an element's stresses, and store its nodal forces in `s`; return whether it yields."""
     c, w = shape(s, X, lane), shape(s, V, lane)
@@ -182,7 +213,7 @@ def _element(
     Q, work = hourglass(state, lane, c, w, L, size, dt, metal)
     s[(_DONE + HOURGLASS_WORK) * W + lane] = work
     L = midway(L, dt)
-    S, work, dissipated, dp, along = advance(state, past, 0, lane, L, dt, metal, hardens)
+    S, work, dissipated, dp, along = advance(state, past, 0, lane, L, dt, metal, hardens, rate)
     dilation, before, mean = _dilate(state, MEAN, lane, L, dt, metal)
     s[(_DONE + WORK) * W + lane] = size * (work + 0.5 * (before + mean) * dilation)
     s[(_DONE + DISSIPATED) * W + lane] = size * dissipated
@@ -315,6 +346,7 @@ def _point(
     dt: float,
     metal: Metal,
     hardens: bool,
+    rate: Rate | None,
 ) -> int:
     """Update an integration point's deviator and its work; add its share to the modes' forces.
 
@@ -331,7 +363,7 @@ def _point(
         times(share, combine(C, (v[0][2], v[1][2], v[2][2]))),
     )
     L = midway(gradient, dt)
-    S, work, dissipated, dp, along = advance(state, past, point, lane, L, dt, metal, hardens)
+    S, work, dissipated, dp, along = advance(state, past, point, lane, L, dt, metal, hardens, rate)
     s[(_DONE + WORK) * W + lane] += size * work
     s[(_DONE + DISSIPATED) * W + lane] += size * dissipated
     T = ((S[0], S[5], S[4]), (S[5], S[1], S[3]), (S[4], S[3], S[2]))

@@ -19,7 +19,7 @@ from impactlab.fem3d.solver.compiler import Array, compiled, inlined
 from impactlab.fem3d.solver.elements import FULL_ROWS, ROWS, add_forces, blocks_of
 from impactlab.fem3d.solver.hexahedron import SCRATCH, Vector, W, cross, dot
 from impactlab.fem3d.solver.impulses import RULE, close_gaps
-from impactlab.fem3d.solver.material import PAST_ROWS, STRESS_ROWS, Metal
+from impactlab.fem3d.solver.material import PAST_ROWS, STRESS_ROWS, Metal, Rate
 from impactlab.fem3d.solver.mesh import BEAM, NEIGHBOURS, SPHERE, Mesh, nodal_masses
 from impactlab.model.impact import Impact
 from impactlab.model.material import Material
@@ -35,12 +35,13 @@ class Group:
     state, past, works: see elements.add_forces, works of each piece: (MOST_THREADS, 3 W).
     """
 
-    def __init__(self, elements: Array, numbers: Array, full: bool, metal: Metal) -> None:
+    def __init__(self, elements: Array, numbers: Array, full: bool, material: Material) -> None:
         """Take the elements of these numbers, at rest; elements: the mesh's, (e, 8)."""
         blocks = -(-numbers.size // W)
         filled = np.append(numbers, np.repeat(numbers[-1], blocks * W - numbers.size))
         nodes = elements[filled].reshape(blocks, W, 8).transpose(0, 2, 1).reshape(blocks, 8 * W)
-        self.elements, self.points, self.metal = numbers, 8 if full else 1, metal
+        self.elements, self.points = numbers, 8 if full else 1
+        self.metal, self.rate = metal(material), rate_law(material)
         # Signed ones may count from the end.
         self.nodes = np.ascontiguousarray(nodes, dtype=np.uint32)
         self.state = np.zeros((blocks, (FULL_ROWS if full else ROWS) * W))
@@ -67,20 +68,26 @@ class Group:
 
 
 def refuse_rate(material: Material) -> None:
-    """Raise ValueError where the yield stress depends on the strain rate, which 3-D models lack."""
+    """Raise ValueError where the yield stress depends on the strain rate, which decks leave out."""
+    for field in ("rate_coefficient", "rate_sensitivity"):
+        if (value := getattr(material, field)) > 0.0:
+            raise ValueError(
+                f"Material.{field} = {value!r}: decks for other programs leave the strain rate "
+                "out: set it to 0"
+            )
+
+
+def rate_law(material: Material) -> Rate | None:
+    """Return the law of the strain rate; None for a yield stress that does not depend on it."""
+    if material.rate_sensitivity > 0.0:
+        return material.reference_rate, 0.0, material.rate_sensitivity
     if material.rate_coefficient > 0.0:
-        raise ValueError(
-            f"Material.rate_coefficient = {material.rate_coefficient!r}: the beam models alone "
-            "have a strain rate: set it to 0"
-        )
+        return material.rate_coefficient, material.rate_exponent, 0.0
+    return None
 
 
 def metal(material: Material) -> Metal:
-    """Return E, nu, G, K, sigma_y, H_i, H_k.
-
-    Raises ValueError where the yield stress depends on the strain rate.
-    """
-    refuse_rate(material)
+    """Return E, nu, G, K, sigma_y, H_i, H_k."""
     E, nu = material.youngs_modulus, material.poissons_ratio
     return (
         E,
@@ -202,9 +209,9 @@ class System:
         """Start at first touch: the sphere moves at the impact's velocity, the beam is at rest."""
         self.mesh, self.pool = mesh, pool
         self.x, self.v = mesh.nodes.copy(), np.zeros_like(mesh.nodes)
-        metals = {BEAM: metal(impact.beam.material), SPHERE: metal(impact.sphere.material)}
+        materials = {BEAM: impact.beam.material, SPHERE: impact.sphere.material}
         self.groups = [
-            Group(mesh.elements, numbers, full, metals[body])
+            Group(mesh.elements, numbers, full, materials[body])
             for body, full, numbers in mesh.groups()
         ]
         self.assembly = ForceAssembly(self.groups, len(mesh.nodes))
@@ -228,7 +235,8 @@ class System:
         def work(thread: int, first: int, end: int) -> None:
             scratch = self._scratch[thread]
             for group, rows in zip(self.groups, self.assembly.of_groups, strict=True):
-                arrays = (group.elements.size, group.points == 8, group.metal, group.nodes, rows)
+                metal = (group.metal, group.rate)
+                arrays = (group.elements.size, group.points == 8, *metal, group.nodes, rows)
                 held = (group.state, group.past, group.works)
                 moved = (self.x, self.v, dt)
                 add_forces((first, end), *arrays, *held, *moved, self.forces, scratch)

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.contact.history import Pair
+from impactlab.solver.contact.history import Pair, yield_stress
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import radius
 from impactlab.solver.contact_patch import contact_radius
@@ -55,8 +55,9 @@ def axis_lift(
         return 0.0
     a = contact_radius(contact, pair, F)
     lift = pressure * F * a * a
-    if contact.delta_r > 0.0 and pair.S_y < hardness:
-        x = contact.delta_m / yield_indentation(pair.E, pair.R, pair.S_y)
-        a = radius(pair.law, contact.delta_m, pair.E, pair.R, pair.S_y, pair.nu)
+    S_y = yield_stress(contact, pair)
+    if contact.delta_r > 0.0 and S_y < hardness:
+        x = contact.delta_m / yield_indentation(pair.E, pair.R, S_y)
+        a = radius(pair.law, contact.delta_m, pair.E, pair.R, S_y, pair.nu)
         lift += contact.delta_r * plastic_lift(x, a / z)
     return float(lift)

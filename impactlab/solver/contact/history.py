@@ -26,7 +26,7 @@ from impactlab.solver.contact import LAWS, finite_element
 from impactlab.solver.contact.metals import LIKE_METALS, shape
 from impactlab.solver.contact.switch import curve
 from impactlab.solver.jit import compiled, inlined, linked
-from impactlab.solver.strain_rate import contact_rate, rate_factor
+from impactlab.solver.strain_rate import RateLaw, rate_law
 from impactlab.solver.types import Record, Shape, Unloading, record
 
 _OF_METALS = LAWS.index("finite_element")
@@ -40,7 +40,9 @@ class Pair(NamedTuple):
     stress (Pa) and Poisson's ratio. compliance (m/N), bending (m2): approach of the bodies beyond
     that of half-spaces, per force and per M/(EI) at mid-span; zero for half-spaces.
     prestress: depth of the beam (m; 0: its stress is ignored) and stresses along and across it per
-    force (1/m2), see contact/prestress.py. shape: of the law's curve by the two metals.
+    force (1/m2), see contact/prestress.py. shape: of the law's curve by the two metals. rate: the
+    law by which S_y grows with the strain rate, up to `hardest` (Pa), at which the other body would
+    yield (contact/rate.py).
     """
 
     law: int
@@ -52,12 +54,14 @@ class Pair(NamedTuple):
     bending: float = 0.0
     prestress: tuple[float, float, float] = (0.0, 0.0, 0.0)
     shape: Shape = LIKE_METALS
+    rate: RateLaw = RateLaw()
+    hardest: float = np.inf
 
 
 CONTACT = record(
     """
     delta_m F_m K delta_r n work delta_w approach_m largest shift shift_before bending_work
-    stress_along stress_across peak_force damping damping_work
+    stress_along stress_across peak_force damping damping_work stress
     """
 )
 """delta_m (m), F_m (N): furthest point on the loading curve. K (N/m^n), delta_r (m), n: the
@@ -65,8 +69,9 @@ unloading curve from there. work (J): integral of the loading force from 0 to de
 approach_m (m): the approach at delta_m. Where bending counts, shift (m): what it adds to the
 approach, now and a step before; bending_work (J): of the force on it; largest (m): approach and
 shift. With prestress: stress_along, stress_across (Pa), by bending, of the beam's lower face;
-approach_m is the largest of all, and work what is dissipated. peak_force (N): with prestress, or a
-damped law, whose damping (N) at the last step has taken damping_work (J)."""
+approach_m is the largest of all. With prestress, or a law of the strain rate, work is what is
+dissipated. peak_force (N): with either, or a damped law, whose damping (N) at the last step has
+taken damping_work (J). stress (Pa): the representative one, see contact/rate.py."""
 
 PANELS = 8
 _ITERATIONS, _MARCHES, _ROUNDING = 60, 1000, 1e-14
@@ -83,17 +88,11 @@ _GAUSS = (
 
 @compiled
 def make_pair(case: Record) -> Pair:
-    """Return sphere against flat beam: 1/E* = (1 - nu_s^2)/E_s + (1 - nu_b^2)/E_b, R* = R_s.
-
-    The beam's yield stress is that at its strain rate under the contact (strain_rate.py).
-    """
+    """Return sphere against flat beam: 1/E* = (1 - nu_s^2)/E_s + (1 - nu_b^2)/E_b, R* = R_s."""
     of_beam = (1.0 - case.beam_poissons_ratio**2) / case.beam_youngs_modulus
     compliance = (1.0 - case.sphere_poissons_ratio**2) / case.sphere_youngs_modulus + of_beam
     E, R = 1.0 / compliance, case.sphere_radius
-    factor = rate_factor(
-        contact_rate(case, E, R), case.beam_rate_coefficient, case.beam_rate_exponent
-    )
-    S_y, nu = case.beam_yield_stress * factor, case.beam_poissons_ratio
+    S_y, nu, rate = case.beam_yield_stress, case.beam_poissons_ratio, rate_law(case)
     share, hardness = E * of_beam, case.sphere_yield_stress / S_y
     kinematic = case.beam_kinematic_hardening_modulus
     hardening = case.beam_isotropic_hardening_modulus + kinematic
@@ -103,25 +102,39 @@ def make_pair(case: Record) -> Pair:
     if S_y > case.sphere_yield_stress:
         S_y, nu, depth = case.sphere_yield_stress, case.sphere_poissons_ratio, 0.0
         share, hardness, hardening = 1.0 - share, 1.0 / hardness, 0.0
+        rate = RateLaw(0.0, 0.0, 0.0)
     compliances = case.compliance, case.bending_compliance
     prestress = depth, case.stress_along, case.stress_across
     metals = shape(E / S_y, share, nu, hardening, kinematic, hardness)
-    return Pair(case.contact, E, R, S_y, nu, *compliances, prestress, metals)
+    hardest = case.sphere_yield_stress
+    return Pair(case.contact, E, R, S_y, nu, *compliances, prestress, metals, rate, hardest)
 
 
 @compiled
-def pair_curve(pair: Pair, delta: float) -> Unloading:
-    """Return force and unloading curve of these bodies' law (see contact/hertz.py)."""
+def yield_stress(contact: Record, pair: Pair) -> float:
+    """Return the softer body's yield stress (Pa) at the contact's strain rate."""
+    if pair.rate.D > 0.0:
+        return min(max(pair.S_y, contact.stress), pair.hardest)
+    return pair.S_y
+
+
+@compiled
+def pair_curve(pair: Pair, delta: float, S_y: float) -> Unloading:
+    """Return force and unloading curve of these bodies' law (see contact/hertz.py).
+
+    S_y: the yield stress (Pa) at the contact's strain rate.
+    """
     if pair.law == _OF_METALS:
-        return finite_element.curve(delta, pair.E, pair.R, pair.S_y, pair.nu, pair.shape)
-    return curve(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
+        return finite_element.curve(delta, pair.E, pair.R, S_y, pair.nu, pair.shape)
+    return curve(pair.law, delta, pair.E, pair.R, S_y, pair.nu)
 
 
 @compiled
 def load(contact: Record, pair: Pair, delta: float) -> None:
     """Move the furthest point of loading on to delta."""
     contact.delta_m = contact.approach_m = delta
-    contact.F_m, contact.K, contact.delta_r, contact.n = pair_curve(pair, delta)
+    S_y = yield_stress(contact, pair)
+    contact.F_m, contact.K, contact.delta_r, contact.n = pair_curve(pair, delta, S_y)
 
 
 @compiled
@@ -211,8 +224,9 @@ def load_to(contact: Record, pair: Pair, approach: float) -> None:
     F_before = contact.F_m
     missed_before = before + pair.compliance * F_before - approach
     delta, step, missed = approach - pair.compliance * F_before, 1.0, 1.0
+    S_y = yield_stress(contact, pair)
     for _ in range(_ITERATIONS):
-        F, _, _, _ = pair_curve(pair, delta)
+        F, _, _, _ = pair_curve(pair, delta, S_y)
         missed = delta + pair.compliance * F - approach
         if delta == before or missed == missed_before:
             break
@@ -269,13 +283,13 @@ def loading_work(pair: Pair, start: float, stop: float, panels: int = PANELS) ->
     in which delta^1.5 is smooth at zero; the panels keep a regime limit of a law from costing
     accuracy. Where delta snaps, the force is that of the spring.
     """
-    F, _, _, _ = pair_curve(pair, start)
+    F, _, _, _ = pair_curve(pair, start, pair.S_y)
     total, furthest = 0.0, start + pair.compliance * F
     for panel in range(panels):
         for point, weight in _GAUSS:
             root = (panel + point) / panels
             delta = start + root * root * (stop - start)
-            F, _, _, _ = pair_curve(pair, delta)
+            F, _, _, _ = pair_curve(pair, delta, pair.S_y)
             borne = delta + pair.compliance * F
             if borne < furthest:
                 F = (furthest - delta) / pair.compliance
@@ -302,11 +316,11 @@ def energies(
     Dissipated is what loading took less what the unloading curve would give back; negative
     where a law creates energy. fast: with roots for powers.
     """
-    prestressed = pair.prestress[0] > 0.0
-    if contact.delta_m > contact.delta_w and not prestressed:
+    summed = pair.prestress[0] > 0.0 or pair.rate.D > 0.0
+    if contact.delta_m > contact.delta_w and not summed:
         contact.work += loading_work(pair, contact.delta_w, contact.delta_m)
         contact.delta_w = contact.delta_m
-    released = 0.0 if prestressed else _released(contact, contact.delta_m - contact.delta_r, fast)
+    released = 0.0 if summed else _released(contact, contact.delta_m - contact.delta_r, fast)
     over = max(approach - contact.delta_r, 0.0)
     if pair.compliance != 0.0:
         over = recovered(contact, pair, approach)

@@ -30,7 +30,7 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.contact.history import MISSED, Pair, bracketed, load, recovered
+from impactlab.solver.contact.history import MISSED, Pair, bracketed, load, recovered, yield_stress
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import radius
 from impactlab.solver.jit import compiled
@@ -58,18 +58,19 @@ def strengthening(x: float, along: float, across: float) -> float:
 def _yields(contact: Record, pair: Pair) -> tuple[float, float]:
     """Return the force (N) and the approach (m) at which the contact yields on."""
     depth, along, across = pair.prestress
-    a = radius(pair.law, contact.delta_m, pair.E, pair.R, pair.S_y, pair.nu)
+    S_y = yield_stress(contact, pair)
+    a = radius(pair.law, contact.delta_m, pair.E, pair.R, S_y, pair.nu)
     left = max(1.0 - a / depth, 0.0)
-    s_x = (along * contact.F_m - left * contact.stress_along) / pair.S_y
-    s_y = (across * contact.F_m - left * contact.stress_across) / pair.S_y
-    x = contact.delta_m / yield_indentation(pair.E, pair.R, pair.S_y)
+    s_x = (along * contact.F_m - left * contact.stress_along) / S_y
+    s_y = (across * contact.F_m - left * contact.stress_across) / S_y
+    x = contact.delta_m / yield_indentation(pair.E, pair.R, S_y)
     F = strengthening(x, s_x, s_y) * contact.F_m
     recovers = (F / contact.K) ** (1.0 / contact.n)
     return F, contact.delta_r + recovers + pair.compliance * F
 
 
 @compiled
-def _complementary(F: float, K: float, delta_r: float, n: float) -> float:
+def complementary(F: float, K: float, delta_r: float, n: float) -> float:
     """Return F delta less the energy stored on an unloading curve, in J."""
     return float(F * (delta_r + (F / K) ** (1.0 / n) * n / (n + 1.0)))
 
@@ -103,8 +104,8 @@ def load_to(contact: Record, pair: Pair, approach: float) -> float:
     if not (abs(step) <= _ROUNDING * approach and abs(missed) <= MISSED * approach):
         F = _load_between(contact, pair, lowest, approach)
     mean = 0.5 * (start + F)
-    contact.work += _complementary(mean, contact.K, contact.delta_r, contact.n)
-    contact.work -= _complementary(mean, K, delta_r, n)
+    contact.work += complementary(mean, contact.K, contact.delta_r, contact.n)
+    contact.work -= complementary(mean, K, delta_r, n)
     return F
 
 

@@ -86,10 +86,12 @@ def prepare(design: xr.Dataset) -> None:
     models = np.unique(design.get("beam_model", impact.beam_model)).tolist()
     schemes = np.unique(design.get("scheme", grid.scheme)).tolist()
     patch = np.atleast_1d(design.get("load", impact.load)) == "contact_patch"
-    rate = np.atleast_1d(design.get("beam_rate_coefficient", impact.beam.material.rate_coefficient))
+    metal = impact.beam.material
+    rate = np.atleast_1d(design.get("beam_rate_coefficient", metal.rate_coefficient))
+    sensitivity = np.atleast_1d(design.get("beam_rate_sensitivity", metal.rate_sensitivity))
     strip = np.atleast_1d(design.get("contact_compliance", impact.contact_compliance)) == "strip"
     stress = np.atleast_1d(design.get("contact_prestress", impact.contact_prestress)) == "bending"
-    options = np.meshgrid(patch, rate > 0.0, strip, stress)
+    options = np.meshgrid(patch, rate > 0.0, sensitivity > 0.0, strip, stress)
     compile_kernels(models, schemes, np.unique(np.logical_or.reduce(options)).tolist())
 
 

@@ -22,6 +22,7 @@ STATED = {"sphere_mass": 2.5, "element_size": 2e-3, "elements_per_radius": 3.0}
 """What the base leaves open."""
 HARDENING = {"beam_isotropic_hardening_modulus": 2e9, "beam_kinematic_hardening_modulus": 3e9}
 HARDENING |= {"beam_rate_coefficient": 40.4, "beam_rate_exponent": 4.0}
+HARDENING |= {"beam_rate_sensitivity": 0.02, "beam_reference_rate": 2.0}
 
 
 def another(name):
@@ -32,6 +33,7 @@ def another(name):
 
 OTHERS = {name: another(name) for name in PARAMETERS}
 TOGETHER = {name: value for name, value in OTHERS.items() if name != "elements_per_radius"}
+TOGETHER["beam_rate_sensitivity"] = 0.0
 """Without what contradicts another."""
 
 

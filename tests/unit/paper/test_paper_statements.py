@@ -203,19 +203,16 @@ def test_a_strain_limit_within_the_uncertainty_cannot_be_judged(fig10):
 
 @pytest.fixture
 def effects(grid_runs):
-    """Responses that shear changes by a share, and the strain rate by up to `rise`."""
+    """Responses that shear changes by a share."""
 
-    def build(shear=0.01, rise=0.2):
-        def value(velocity, beam_model, beam_rate_coefficient, nodes):
+    def build(shear=0.01):
+        def value(velocity, beam_model, nodes):
             sheared = xr.where(beam_model == "timoshenko", 1.0 + shear, 1.0)
-            coefficient = beam_rate_coefficient.where(beam_rate_coefficient > 0.0, np.inf)
-            rated = 1.0 + rise * (40.4 / coefficient) ** 0.2
-            return velocity * sheared * rated * second_order(nodes, 1e-6)
+            return velocity * sheared * second_order(nodes, 1e-6)
 
         axes = {
             "velocity": [0.99, 5.0, 10.0],
             "beam_model": ["euler_bernoulli", "timoshenko"],
-            "beam_rate_coefficient": [0.0, 40.4, 3200.0],
             "nodes": GRIDS,
         }
         named = dict.fromkeys(("peak_force", "contact_duration"), value)
@@ -232,16 +229,46 @@ def test_shear(effects):
     assert verdicts(omissions.shear.judge(effects(shear=-0.05))) == [FAILS] * 6
 
 
-def test_strain_rate(effects):
-    """The interval reaches from the change of high-tensile steel to that of mild steel."""
-    force, _ = next(iter(omissions.strain_rate.judge(effects()))).numbers
-    assert force.low == pytest.approx(0.2 * (40.4 / 3200.0) ** 0.2, abs=1e-5)
-    assert force.high == pytest.approx(0.2, abs=1e-5)
-    assert verdicts(omissions.strain_rate.judge(effects())) == [FAILS] * 6
-    assert verdicts(omissions.strain_rate.judge(effects(rise=-0.03))) == [FAILS, READING] * 3
-    assert verdicts(omissions.strain_rate.judge(effects(rise=0.0))) == [HOLDS, READING] * 3
-    static = {"fig05_effects": effects()["fig05_effects"].isel(beam_rate_coefficient=0)}
-    assert verdicts(omissions.strain_rate.judge(static)) == [UNKNOWN] * 6
+@pytest.fixture
+def rates(grid_runs):
+    """Responses that the strain rate changes by shares: of first yield, in flow, Johnson-Cook."""
+
+    def build(**rises):
+        studies = {}
+        for study, varied in (
+            ("fig05_rate", "D"),
+            ("fig05_flow", "D"),
+            ("fig05_johnson_cook", "C"),
+        ):
+            name = {"D": "beam_rate_coefficient", "C": "beam_rate_sensitivity"}[varied]
+            changes = {float(place): rise for place, rise in enumerate((0.0, *rises[study]))}
+
+            def value(velocity, nodes, changes=changes, name=name, **constant):
+                rise = sum(xr.where(constant[name] == key, changes[key], 0.0) for key in changes)
+                return velocity * (1.0 + rise) * second_order(nodes, 1e-6)
+
+            axes = {"velocity": [0.99, 5.0, 10.0], name: [*changes], "nodes": GRIDS}
+            named = dict.fromkeys(("peak_force", "contact_duration"), value)
+            studies[study] = grid_runs(axes, **named)
+        return studies
+
+    return build
+
+
+def test_strain_rate(rates):
+    """The interval reaches over all constants of a kind, and over both laws in flow."""
+    runs = rates(fig05_rate=(0.2, 0.08), fig05_flow=(0.03,), fig05_johnson_cook=(0.01, -0.02))
+    judged = list(omissions.strain_rate.judge(runs))
+    first, flow = judged[0].numbers[0], judged[6].numbers[0]
+    assert (first.low, first.high) == pytest.approx((0.08, 0.2), abs=1e-5)
+    assert (flow.low, flow.high) == pytest.approx((-0.02, 0.03), abs=1e-5)
+    assert verdicts(judged) == [FAILS] * 6 + [HOLDS, READING] * 3
+    assert "first yield" in judged[0].case
+    assert "flow" in judged[6].case
+    small = rates(fig05_rate=(0.02,), fig05_flow=(0.02,), fig05_johnson_cook=(0.02,))
+    assert verdicts(omissions.strain_rate.judge(small)) == [FAILS, READING] * 6
+    static = runs | {"fig05_rate": runs["fig05_rate"].isel(beam_rate_coefficient=0)}
+    assert verdicts(omissions.strain_rate.judge(static))[:6] == [UNKNOWN] * 6
 
 
 def test_run_time(grid_runs, monkeypatch):

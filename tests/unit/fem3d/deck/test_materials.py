@@ -150,3 +150,10 @@ def test_calculix_softens_with_kinematic_hardening(tmp_path, written, impact):
     with pytest.raises(ValueError, match=r"kinematic_hardening_modulus = 9000000000\.0 Pa"):
         written("calculix", this)
     assert written("calculix", this, plastic=False)
+
+
+@pytest.mark.parametrize("field", ["rate_coefficient", "rate_sensitivity"])
+def test_a_strain_rate_is_refused(written, impact, field):
+    steel = replace(impact.beam.material, **{field: 0.5})
+    with pytest.raises(ValueError, match=rf"Material\.{field} = 0\.5: .* set it to 0"):
+        written("abaqus", replace(impact, beam=replace(impact.beam, material=steel)))

@@ -6,7 +6,7 @@ import pytest
 from impactlab.fem3d.solver.elements import FULL_MEAN, MEAN, add_forces
 from impactlab.fem3d.solver.hexahedron import SCRATCH, W
 from impactlab.fem3d.solver.mesh import brick
-from impactlab.fem3d.solver.system import MOST_THREADS, ForceAssembly, Group, metal
+from impactlab.fem3d.solver.system import MOST_THREADS, ForceAssembly, Group
 from impactlab.model.material import Material
 
 STEEL = Material(density=7800.0, youngs_modulus=200e9, poissons_ratio=0.3, yield_stress=1e11)
@@ -18,7 +18,7 @@ class Body:
     def __init__(self, nodes, elements, kind, steel=STEEL):
         self.x, self.elements = nodes.copy(), elements
         numbers = np.arange(len(elements))
-        self.group = Group(elements, numbers, kind == "full", metal(steel))
+        self.group = Group(elements, numbers, kind == "full", steel)
         self._rows = ForceAssembly([self.group], len(nodes))
         self._forces = np.zeros((self._rows.count, 3))
         self._scratch = np.zeros(SCRATCH * W)
@@ -29,7 +29,7 @@ class Body:
         self._forces[:] = 0.0
         self.x = np.ascontiguousarray(x)
         rows = self._rows.of_groups[0]
-        own = (group.points == 8, group.metal, group.nodes, rows)
+        own = (group.points == 8, group.metal, group.rate, group.nodes, rows)
         held = (group.state, group.past, group.works)
         add_forces(
             (0, MOST_THREADS),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.elements import HOURGLASS_WORK, WORK
+from impactlab.fem3d.solver.elements import DISSIPATED, HOURGLASS_WORK, WORK
 from impactlab.fem3d.solver.mesh import brick
 from impactlab.model.material import Material
 
@@ -195,3 +195,32 @@ def test_full_elements_keep_their_volume_without_locking(make_body):
     deviator = 2 * G * (2 / 3) / 2 * 8 / 3 * 1e-12
     shear = G / 2 * 8 / 3 * 1e-12
     assert work == pytest.approx(deviator + shear, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("law", "factor"),
+    [
+        ({"rate_coefficient": 40.4, "rate_exponent": 5.0}, 1 + (100 / 40.4) ** 0.2),
+        ({"rate_sensitivity": 0.03, "reference_rate": 0.5}, 1 + 0.03 * np.log(200)),
+    ],
+    ids=["cowper_symonds", "johnson_cook"],
+)
+def test_an_element_pulled_at_a_constant_rate_has_the_stress_of_the_law(
+    make_body, kind, law, factor
+):
+    """A true strain at 100 1/s that keeps the volume: one stress and its work everywhere."""
+    sigma, rate, last, steps = 300e6, 100.0, 0.02, 400
+    metal = {"density": 7800.0, "youngs_modulus": 200e9, "poissons_ratio": 0.3}
+    line = np.linspace(0.0, 1.0, 3)
+    nodes, elements = brick(line, line, line)
+    body = make_body(nodes, elements, kind, Material(**metal, yield_stress=sigma, **law))
+    for strain in np.linspace(0.0, last, steps + 1)[1:]:
+        stretch = np.exp(strain * np.array([1.0, -0.5, -0.5]))
+        body.move_to(nodes * stretch, dt=last / rate / steps)
+    yields = sigma * factor
+    assert 1.5 * body.deviators()[0] == pytest.approx(np.full_like(body.deviators()[0], yields))
+    slipped = last - yields / (3 * G)
+    works = body.group.energies()
+    assert works[DISSIPATED] == pytest.approx(yields * slipped, rel=5e-3)
+    stored = 0.5 * yields**2 / (3 * G)
+    assert works[WORK] == pytest.approx(works[DISSIPATED] + stored, rel=1e-3)

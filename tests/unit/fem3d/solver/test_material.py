@@ -1,10 +1,10 @@
-"""Radial return against closed forms: one step, and cycles with hardening."""
+"""Radial return against closed forms: one step, cycles with hardening, and constant rates."""
 
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver.material import mises, radial_return
-from impactlab.fem3d.solver.system import metal
+from impactlab.fem3d.solver.material import mises, radial_return, slip_at_rate
+from impactlab.fem3d.solver.system import metal, rate_law
 from impactlab.model.material import Material
 from impactlab.verification.solutions.bending import path_stresses
 
@@ -13,7 +13,14 @@ G = E / 2 / (1 + NU)
 NONE = (0.0,) * 6
 
 
-def steel(isotropic=0.0, kinematic=0.0, modulus=E):
+RATES = {
+    "cowper_symonds": {"rate_coefficient": 40.4, "rate_exponent": 5.0},
+    "johnson_cook": {"rate_sensitivity": 0.03, "reference_rate": 0.5},
+}
+every_rate = pytest.mark.parametrize("name", RATES)
+
+
+def steel(isotropic=0.0, kinematic=0.0, modulus=E, **rate):
     return Material(
         density=7800.0,
         youngs_modulus=modulus,
@@ -21,7 +28,15 @@ def steel(isotropic=0.0, kinematic=0.0, modulus=E):
         yield_stress=SIGMA,
         isotropic_hardening_modulus=isotropic,
         kinematic_hardening_modulus=kinematic,
+        **rate,
     )
+
+
+def factor(name, rate):
+    """The yield stress over the static one."""
+    if name == "johnson_cook":
+        return 1 + 0.03 * max(np.log(rate / 0.5), 0.0)
+    return 1 + (rate / 40.4) ** 0.2
 
 
 def test_within_the_yield_surface_nothing_happens():
@@ -83,3 +98,43 @@ def test_both_hardenings_add_up_in_a_first_loading():
     first = SIGMA / (3 * G)
     assert 1.5 * s[0] == pytest.approx(SIGMA + slope * (strain - first), rel=1e-12)
     assert 1.5 * a[0] == pytest.approx(6e9 * p, rel=1e-12)
+
+
+@every_rate
+@pytest.mark.parametrize("beyond", [1e-7, 0.01, 0.3, 30.0])
+@pytest.mark.parametrize("dt", [1e-9, 1e-5])
+def test_slip_at_a_rate_is_the_root(name, beyond, dt):
+    Y, H_i, H_k = 1.2 * SIGMA, 3e9, 7e9
+    q = (1.0 + beyond) * Y
+    dp = slip_at_rate(q, Y, 3 * G + H_k, H_i, dt, rate_law(steel(**RATES[name])))
+    left = (Y + H_i * dp) * factor(name, dp / dt) + (3 * G + H_k) * dp
+    assert dp > 0
+    assert left == pytest.approx(q, rel=1e-11)
+
+
+@every_rate
+@pytest.mark.parametrize(("isotropic", "kinematic"), [(0.0, 0.0), (5e9, 0.0), (0.0, 5e9)])
+def test_a_constant_rate_gives_the_stress_of_the_law(name, isotropic, kinematic):
+    """Along one axis: 3/2 s_xx, less 3/2 of the back stress, is the yield stress at its rate."""
+    material = steel(isotropic, kinematic, **RATES[name])
+    rate, steps, strain = 200.0, 400, 0.02
+    s, a, p, dt, dp = NONE, NONE, 0.0, strain / steps / rate, 0.0
+    for _ in range(steps):
+        step = 2 * G * strain / steps * np.array([1, -0.5, -0.5, 0, 0, 0])
+        trial = tuple(np.array(s) + step)
+        s, a, dp, _ = radial_return(trial, a, p, metal(material), dt, rate_law(material))
+        p += dp
+    hardened = SIGMA + isotropic * p
+    assert 1.5 * (s[0] - a[0]) == pytest.approx(hardened * factor(name, dp / dt), rel=1e-10)
+    slope = factor(name, dp / dt) * isotropic + kinematic
+    assert dp / dt == pytest.approx(rate * 3 * G / (3 * G + slope), rel=0.01)
+
+
+def test_without_a_law_the_step_has_no_duration():
+    material, trial = steel(1e9, 2e9), (5e8, -3e8, -2e8, 1e8, -4e8, 2e8)
+    assert rate_law(material) is None
+    still = radial_return(trial, NONE, 0.01, metal(material))
+    assert radial_return(trial, NONE, 0.01, metal(material), 1e-6, None) == still
+    slow = steel(1e9, 2e9, rate_sensitivity=0.03, reference_rate=1e9)
+    rated = radial_return(trial, NONE, 0.01, metal(slow), 1e-6, rate_law(slow))
+    np.testing.assert_allclose(np.hstack(rated), np.hstack(still), rtol=1e-12)

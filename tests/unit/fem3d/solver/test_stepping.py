@@ -12,15 +12,13 @@ from impactlab.fem3d.solver.system import MOST_THREADS, ForceAssembly, Group, Sy
 from impactlab.model.impact import Beam, Impact, Sphere
 from impactlab.model.material import Material
 
-METAL = (210e9, 0.3, 80e9, 175e9, 345e6, 0.0, 0.0)
-
 
 def two_groups():
     """Return groups of 11 and of 979 elements, all of one brick."""
     nodes, elements = brick(np.arange(11.0), np.arange(12.0), np.arange(10.0))
     numbers = np.split(np.arange(len(elements)), [11])
     groups = [
-        Group(elements, which, whole, METAL)
+        Group(elements, which, whole, STEEL)
         for which, whole in zip(numbers, (True, False), strict=True)
     ]
     return len(nodes), groups

@@ -99,11 +99,17 @@ def test_a_lumped_beam_has_no_contact_patch(refused, grid, model):
     refused(grid(varied | {"impact.load": "contact_patch"}), "impact.load", model)
 
 
-def test_the_three_dimensional_model_has_no_strain_rate(problems, grid):
+def test_the_three_dimensional_model_has_a_strain_rate(problems, grid):
     varied = {"beam_model": ["timoshenko", "solid"], "beam_rate_coefficient": [0, "40.4 s-1"]}
     given = {"sampling.parameters": varied, "discretisation": {"element_size": "1 mm"}}
     found = dict(problems(grid(given)))
-    assert "beam_model: solid" in found["sampling.parameters.beam_rate_coefficient"]
+    assert "sampling.parameters.beam_rate_coefficient" not in found
+
+
+def test_a_study_has_one_law_of_the_strain_rate(problems, grid):
+    both = {"beam_rate_coefficient": [0, "40.4 s-1"], "beam_rate_sensitivity": [0, 0.014]}
+    found = " ".join(map(str, problems(grid({"sampling.parameters": both}))))
+    assert "set one to 0" in found
 
 
 def test_auto_stands_for_the_fastest_scheme_of_every_beam_model_of_the_study(read, grid):
