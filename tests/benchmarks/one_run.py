@@ -1,9 +1,9 @@
 """The cost of `il.simulate` beside its kernel: `make bench`.
 
-The kernel's part (`solve` with histories and profiles) runs right before each timed call on the same
-thread, and differences and ratios of these pairs are reported: what else the machine does then
-weighs on both. "same axes": only the velocity changes from run to run; "other axes": the span does,
-too.
+The part of the kernel (`solve` with histories and profiles) runs right before each timed call on
+the same thread, and differences and ratios of these pairs are reported: what else the machine does
+then weighs on both. "same axes": only the velocity changes from run to run; "other axes": the span
+does, too.
 """
 
 from __future__ import annotations
