@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from impactlab.model.cost import contact_time, swing
+from impactlab.model.cost import contact_time, flies, swing
 from impactlab.model.quantities import engineering
 from impactlab.solver import outputs
 from impactlab.variables import FAILURES, RESPONSES
@@ -25,10 +25,12 @@ def too_short(cases: Any, status: Any) -> str:
     """Return which responses runs are too short for, and a duration that lasts; "" for none.
 
     cases: records of solver.types.CASE of one duration. status: of each. No duration is stated
-    where gravity takes a sphere's velocity in three swings, or the duration should have lasted.
+    where gravity takes a sphere's velocity in three swings, or the duration should have lasted. The
+    deflection of a beam that moves off grows as long as it does, so no duration is asked for it.
     """
     status = np.ravel(status)
     diverged = status & outputs.DIVERGED != 0
+    status = np.where(flies(cases), status & ~outputs.DEFLECTION_STILL_GROWING, status)
     bits = np.where(diverged, 0, status)[:, None] & np.array(list(_SWINGS))
     short = bits.any(axis=1)
     if not short.any():

@@ -112,6 +112,11 @@ WARNINGS: dict[str, tuple[int, str]] = {
         "beyond what the corrections are tested for: forces may be off by 6 %, indentations "
         "by 4 %",
     ),
+    "struck_near_end": (
+        outputs.STRUCK_NEAR_END,
+        "the strike lies within a beam depth of an end, where the body under the contact is "
+        "no half-space and the section no beam",
+    ),
 }
 """Warnings on available responses, by name: (bit in `remarks`, in words)."""
 OUTSIDE_DATA = sum(bit for name, (bit, _) in WARNINGS.items() if name.endswith("outside_data"))
@@ -153,12 +158,12 @@ def _table(*entries: Variable) -> dict[str, Variable]:
 
 HISTORIES = _table(
     Variable("contact_force", ("time",), "N", "contact force"),
-    Variable("midspan_deflection", ("time",), "m", "deflection of the beam at mid-span"),
+    Variable("midspan_deflection", ("time",), "m", "deflection of the beam under the sphere"),
     Variable(
         "midspan_curvature",
         ("time",),
         "m-1",
-        "curvature of the beam at mid-span (w_xx; psi_x of a Timoshenko beam)",
+        "curvature of the beam under the sphere (w_xx; psi_x of a Timoshenko beam)",
     ),
     Variable("sphere_displacement", ("time",), "m", "displacement of the sphere since first touch"),
     Variable("indentation", ("time",), "m", "indentation (approach of sphere and beam axis)"),
@@ -184,7 +189,7 @@ FIELDS = _table(
 COORDINATES = _table(
     Variable("time", ("time",), "s", "time since first touch"),
     Variable("field_time", ("field_time",), "s", "time of the fields since first touch"),
-    Variable("x", ("x",), "m", "distance from the left support"),
+    Variable("x", ("x",), "m", "distance from the left end"),
     Variable("z", ("z",), "m", "distance below the beam's axis"),
     Variable("duration", (), "s", "simulated time"),
     Variable("run", ("run",), "1", "number of the run"),

@@ -287,10 +287,15 @@ def _beam(ax: Axes, run: xr.Dataset) -> Part:
     ax.tick_params(labelbottom=False)
     scales.linear(ax, "y", ticks=4)
     (line,) = ax.plot(x, shapes[0], color=style.COLOURS[0], linewidth=2.0, solid_capstyle="butt")
-    ax.plot(x[[0, -1]], [0.0, 0.0], "^", color=style.MUTED, markersize=6, clip_on=False)
+    share = run["strike_position"].item() if "strike_position" in run else 0.5
+    for end, side in zip((0, -1), ("left", "right"), strict=True):
+        support = run[f"support_{side}"].item() if f"support_{side}" in run else "pinned"
+        if support != "free":
+            marker = "^" if support == "pinned" else "s"
+            ax.plot(x[end], 0.0, marker, color=style.MUTED, markersize=6, clip_on=False)
     above = ScaledTranslation(0.0, (_BALL + 1.5) / 72, ax.figure.dpi_scale_trans)
     (ball,) = ax.plot(
-        [0.5 * (x[0] + x[-1])],
+        [x[0] + share * (x[-1] - x[0])],
         sphere[:1],
         "o",
         markersize=2 * _BALL,
@@ -309,7 +314,7 @@ def _zone(ax: Axes, run: xr.Dataset) -> Part:
     strain = run["equivalent_plastic_strain_over_time"]
     place, depth, unit = display(run["x"]), display(run["z"]), display(strain)
     x, z, fields = place(run["x"]), depth(run["z"]), unit(strain)
-    ax.set(xlabel=labels.axis("distance from the left support", place.symbol))
+    ax.set(xlabel=labels.axis("distance from the left end", place.symbol))
     ax.set_ylabel(labels.axis("below the axis", depth.symbol))
     ax.set_title("Equivalent plastic strain (PEEQ)", loc="left")
     ax.grid(visible=False)

@@ -20,7 +20,7 @@ from impactlab.figures.measures import analysed
 from impactlab.figures.needs import needed
 from impactlab.model.cost import node_steps
 from impactlab.model.parameters import REFINEMENTS
-from impactlab.solver import BEAM_MODELS, SCHEMES
+from impactlab.solver import BEAM_MODELS, SCHEMES, SUPPORTS
 from impactlab.types import Floats
 from impactlab.verdicts import ROUND_OFF, TOLERANCE
 
@@ -37,6 +37,8 @@ CAPTION = (
 _DASHED: dict[str, Any] = {"linestyle": (0, (2, 1.5)), "linewidth": 0.6}
 _BEAM = ("beam_span", "beam_width", "beam_depth", "beam_density", "beam_youngs_modulus")
 _INPUTS = (*_BEAM, "beam_model", "scheme", "nodes", "courant", "duration")
+_WORDS = {"beam_model": BEAM_MODELS, "scheme": SCHEMES}
+_WORDS |= dict.fromkeys(("support_left", "support_right"), SUPPORTS)
 
 
 @dataclass(frozen=True)
@@ -323,9 +325,9 @@ def _draw_tolerance(ax: Axes) -> None:
 @record.figure(
     "Cost against error",
     "Difference to the limit at zero spacing (Richardson's value, that of the least-squares "
-    "fit, or else the finest value) against the estimated work of a run: half its nodes times "
-    "its time steps. What a step costs grows with the integration points, and depends "
-    "on the scheme.",
+    "fit, or else the finest value) against the estimated work of a run: its nodes (of a "
+    "symmetric impact half of them) times its time steps. What a step costs grows with the "
+    "integration points, and depends on the scheme.",
     lambda runs, analysis: (
         _COST.applies(runs, analysis)
         and all(name in runs.coords for name in _INPUTS)
@@ -337,7 +339,9 @@ def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a panel per response, a curve for each of a few other settings."""
     selected = _COST.plan(runs)
     given = {name: runs[name].reset_coords(drop=True) for name in _INPUTS}
-    for name, words in {"beam_model": BEAM_MODELS, "scheme": SCHEMES}.items():
+    others = {"support_left": "pinned", "support_right": "pinned", "strike_position": 0.5}
+    given |= {name: runs.get(name, xr.DataArray(plain)) for name, plain in others.items()}
+    for name, words in _WORDS.items():
         given[name] = xr.apply_ufunc(np.vectorize(words.index), given[name])
     work = node_steps(dict(zip(given, xr.broadcast(*given.values()), strict=True)))
     figure, axes = responses_grid.panels(_COST.names(runs), height=40)

@@ -25,7 +25,7 @@ _plan_by_law = partial(plan, variable=_FORCE, panel="velocity", prefer=["contact
 _WIDE = 3  # largest number of contact laws whose displacements fit side by side
 _DISPLACEMENTS = {
     "sphere_displacement": "sphere",
-    "midspan_deflection": "beam at mid-span",
+    "midspan_deflection": "beam under the sphere",
     "indentation": "indentation",
 }
 _STRAIN = "equivalent_plastic_strain"
@@ -110,7 +110,7 @@ def _panel_per_run(
 
 @record.figure(
     "Displacements against time",
-    "Displacement of the sphere since first touch, deflection of the beam at mid-span, and "
+    "Displacement of the sphere since first touch, deflection of the beam under it, and "
     "their difference, the indentation (below zero: the two are apart); downwards is positive. "
     "The sphere's flight after its last contact is cut off where it would hide the rest.",
     lambda runs, analysis: (
@@ -270,7 +270,7 @@ def plastic_strain(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
         largest = run[_STRAIN].max("z").dropna("x")
         return place(largest["x"]), strain(largest.where(largest > 0))
 
-    along = labels.axis("distance from the left support", place.symbol)
+    along = labels.axis("distance from the left end", place.symbol)
     figure, axes, selected = curves.draw(plastic, _STRAIN, line, along, labels.axis("PEEQ", "%"))
     for ax in axes:
         values = scales.drawn(ax, "y")
@@ -281,8 +281,9 @@ def plastic_strain(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
             ax.set_ylim(_LOWEST, top)
         elif ax.lines:
             style.remark(ax, "no plastic strain")
-        if not plastic["beam_depth"].ndim and not plastic["beam_span"].ndim:
-            middle, depth = float(plastic["beam_span"]) / 2, float(plastic["beam_depth"])
+        struck = plastic["beam_span"] * plastic.get("strike_position", 0.5)
+        if not plastic["beam_depth"].ndim and not struck.ndim:
+            middle, depth = float(struck), float(plastic["beam_depth"])
             for mark in (middle - depth, middle + depth):
                 label = "_guide: one beam depth from the impact"
                 ax.axvline(place.scale * mark, linestyle=":", label=label, **style.GUIDE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -11,10 +12,21 @@ from impactlab import wings
 from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import case_fields
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Beam, Impact
+from impactlab.model.impact import MID_SPAN, OTHER_BEAM, Beam, Impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LOADS, LUMPED_MODELS, SCHEMES
+from impactlab.solver import (
+    BEAM_MODELS,
+    BENDING_MODELS,
+    LOADS,
+    LUMPED_MODELS,
+    SCHEMES,
+    SUPPORTS,
+)
 from impactlab.solver.types import CASE
+
+PINNED = SUPPORTS.index("pinned")
+_ON_NODE = 1e-6
+"""Distance (spacings) from a node at which a strike lies on it."""
 
 
 def case_table(
@@ -62,7 +74,41 @@ def case_table(
             raise ValueError(
                 f"{run}{name} = {word!r}: beam_model = {model!r} has {only!r} alone{reason}"
             )
+    refused = (cases["scheme"] == SCHEMES.index("modal")) & ~pinned_halves(cases)
+    if refused.any():
+        run = f"run {first_run + int(refused.argmax())}: " if varied else ""
+        raise ValueError(f"{run}scheme = 'modal': must be leapfrog {OTHER_BEAM}")
+    between = cases["strike_position"] * (cases["nodes"] - 1)
+    refused = abs(between - between.round()) > _ON_NODE
+    if refused.any():
+        row = int(refused.argmax())
+        run = f"run {first_run + row}: " if varied else ""
+        reason = between_nodes(cases["strike_position"][row], int(cases["nodes"][row]))
+        raise ValueError(f"{run}strike_position = {cases['strike_position'][row]:.12g}: {reason}")
     return cases
+
+
+def between_nodes(place: float, nodes: int) -> str:
+    """Return why the share `place` of the span cannot be struck with so many nodes; "" if it can.
+
+    >>> between_nodes(0.33, 41)
+    'lies between two of the 41 nodes: take 0.325 or 0.35, or 101 nodes'
+    """
+    cell = place * (nodes - 1)
+    if abs(cell - round(cell)) <= _ON_NODE:
+        return ""
+    low, high = (f"{math.floor(cell + side) / (nodes - 1):.6g}" for side in (0, 1))
+    spacings = range(4, 10 * nodes, 2)
+    finer = [n for n in spacings if abs(place * n - round(place * n)) <= _ON_NODE]
+    nearest = min(finer, key=lambda n: abs(n + 1 - nodes), default=0)
+    other = f", or {nearest + 1} nodes" if nearest else ""
+    return f"lies between two of the {nodes} nodes: take {low} or {high}{other}"
+
+
+def pinned_halves(cases: Any) -> Any:
+    """Return which cases are of pinned beams struck in the middle."""
+    pinned = (cases["support_left"] == PINNED) & (cases["support_right"] == PINNED)
+    return pinned & (cases["strike_position"] == MID_SPAN)
 
 
 def _one_by_one(

@@ -7,16 +7,29 @@ from typing import Any
 import numpy as np
 
 from impactlab.model.section import section_of
-from impactlab.solver import BEAM_MODELS, SCHEMES
+from impactlab.solver import BEAM_MODELS, SCHEMES, SUPPORTS
 
 A_SECOND = 3e8
 """Node-steps per second of one core; half of it or twice is possible."""
-SOLVED = 0.5
-"""Share of the nodes that the kernels solve: those of half the beam (solver/beam.py)."""
+_FIRST = np.array([[98.8, 237.7, 237.7], [237.7, 500.6, 12.36], [237.7, 12.36, 500.6]])
+"""Lowest omega^2 over EI/(rho A L^4), of bending, by left and right end; pinned: by Rayleigh."""
+
+
+def solved(cases: Any) -> Any:
+    """Return the share of the nodes that the kernels solve: half of a symmetric beam's."""
+    symmetric = cases["support_left"] == cases["support_right"]
+    return np.where(symmetric & (cases["strike_position"] == 0.5), 0.5, 1.0)
+
+
+def flies(cases: Any) -> Any:
+    """Return whether nothing holds the beam, so that it moves off under the blow."""
+    left, right = cases["support_left"], cases["support_right"]
+    clamped, free = SUPPORTS.index("clamped"), SUPPORTS.index("free")
+    return ((left == free) & (right != clamped)) | ((right == free) & (left != clamped))
 
 
 def node_steps(cases: Any) -> Any:
-    """Return the estimated cost per run: half the nodes times the time steps.
+    """Return the estimated cost per run: the nodes that are solved times the time steps.
 
     cases: a record of solver.types.CASE, or an array of them. Their largest step is that of bending
     for the paper's beam by leapfrog, a bar wave's over a spacing for the modal scheme, and half of
@@ -28,7 +41,7 @@ def node_steps(cases: Any) -> Any:
     bends = cases["beam_model"] <= BEAM_MODELS.index("elastic")
     modal = cases["scheme"] == SCHEMES.index("modal")
     largest = np.where(modal, wave, np.where(bends, bending, 0.5 * wave))
-    return SOLVED * cases["nodes"] * cases["duration"] / (cases["courant"] * largest)
+    return solved(cases) * cases["nodes"] * cases["duration"] / (cases["courant"] * largest)
 
 
 _RATES = (1.0, 1.0, 1.5, 4.0, 4.0)  # cost of a node per step over the paper's, by beam model
@@ -59,12 +72,13 @@ def work(cases: Any) -> Any:
     # the largest step of the sphere, and of the beam's middle node if any, on that spring
     step = 2.0 / np.sqrt(stiffness * (1.0 / mass + np.where(lumped, 0.0, 1.0 / node)))
     contact = cases["duration"] / (cases["courant"] * step)
-    bending = node_steps(cases) / (SOLVED * nodes)
+    nodes = solved(cases) * nodes
+    bending = node_steps(cases) / nodes
     steps = 1.0 + np.where(lumped, _LUMPED * contact, np.hypot(bending, contact))
-    leapfrog = steps * (SOLVED * nodes * np.take(_RATES, model) + _BESIDES)
+    leapfrog = steps * (nodes * np.take(_RATES, model) + _BESIDES)
     in_contact = _CONTACTS * 2.94 * indentation / cases["velocity"] / cases["duration"]
-    touching = SOLVED * nodes * _MODE + _MODES_BESIDES
-    yielding = SOLVED * nodes * _YIELDING + _MODES_BESIDES
+    touching = nodes * _MODE + _MODES_BESIDES
+    yielding = nodes * _YIELDING + _MODES_BESIDES
     # A beam that is given the velocity v at a point has there the strain sqrt(3) v/c, c of a bar
     # wave (Boussinesq). The share of steps in which sections yield, or are about to, grows from
     # none where this yields to all at four times it, as fitted to measured times.
@@ -84,19 +98,41 @@ def contact_time(cases: Any) -> Any:
 def swing(cases: Any) -> Any:
     """Return an upper estimate of the time in s in which sphere and beam swing once, of each run.
 
-    That is the period of one mass on the bending stiffness, with 17/35 of the mass of a beam that
-    is struck at mid-span (Cox), and the time in which a plastic hinge there stops the sphere. A
-    rigid beam does not swing.
+    That is the period of the sphere on the bending stiffness, and of the beam alone (Dunkerley: the
+    squares add up to a longer one than theirs together), and the time in which a plastic hinge
+    under the sphere stops it. A rigid beam does not swing; one that flies counts as pinned.
     """
     span, section = cases["beam_span"], section_of(cases)
-    stiffness = 48.0 * section.bending_stiffness(cases["beam_youngs_modulus"]) / span**3
+    flexibility, lever = _statics(cases)
+    stiffness = section.bending_stiffness(cases["beam_youngs_modulus"]) / span**3
     beam = section.mass_per_length(cases["beam_density"]) * span
-    mass = cases["sphere_mass"] + 17.0 / 35.0 * beam
+    first = _FIRST[cases["support_left"], cases["support_right"]]
     yields = cases["beam_model"] != BEAM_MODELS.index("elastic")
-    collapse = 4.0 * cases["beam_yield_stress"] * section.plastic_modulus / span
+    collapse = cases["beam_yield_stress"] * section.plastic_modulus / (lever * span)
     hinge = yields * cases["sphere_mass"] * cases["velocity"] / collapse
-    period = 2.0 * np.pi * np.sqrt(mass / stiffness)
+    period = 2.0 * np.pi * np.sqrt((cases["sphere_mass"] * flexibility + beam / first) / stiffness)
     return np.where(cases["beam_model"] == BEAM_MODELS.index("rigid"), 0.0, period + hinge)
+
+
+def _statics(cases: Any) -> tuple[Any, Any]:
+    """Return the static deflection under a force there, over F L^3/(EI), and the lever over L.
+
+    The moment of a hinge there under the force is at most the force times the lever.
+    """
+    clamped, free = SUPPORTS.index("clamped"), SUPPORTS.index("free")
+    ends, place = (cases["support_left"], cases["support_right"]), cases["strike_position"]
+    # x: from the clamped end, or the left one
+    x = np.where((ends[1] == clamped) & (ends[0] != clamped), 1.0 - place, place)
+    one = (ends[0] == clamped) != (ends[1] == clamped)
+    both = (ends[0] == clamped) & (ends[1] == clamped)
+    cantilever = one & ((ends[0] == free) | (ends[1] == free))
+    y = 1.0 - x
+    flexibility = np.select(
+        [both, cantilever, one],
+        [x**3 * y**3 / 3.0, x**3 / 3.0, x**3 * y**2 * (4.0 - x) / 12.0],
+        x**2 * y**2 / 3.0,
+    )
+    return flexibility, np.where(cantilever, x, np.maximum(x * y, 1e-3))
 
 
 def _hertz(cases: Any) -> tuple[Any, Any]:

@@ -8,21 +8,27 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
 
 from impactlab import wings
 from impactlab.model.checks import instance, number, one_of, positive, require
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI, Quantity, engineering
 from impactlab.model.section import SHAPES, Rectangle
-from impactlab.solver import BEAM_MODELS, COMPLIANCES, LOADS, PRESTRESSES
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, COMPLIANCES, LOADS, PRESTRESSES, SUPPORTS
 from impactlab.solver.contact import LAWS
 
 MODELS = (*BEAM_MODELS, *wings.models())
 """Names of all models of the beam."""
-SUPPORTS = ("pinned",)
-"""Supports of a beam; solver/beam.py says what others, or another MID_SPAN, would change."""
 MID_SPAN = 0.5
-"""Place of the strike over the span."""
+"""Usual place of the strike over the span."""
+OTHER_BEAM = (
+    "with ends that are not pinned, or a strike beside mid-span: change it, or set support_left: "
+    "pinned, support_right: pinned and strike_position: 0.5"
+)
+"""Ends of messages on what other beams cannot have."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,12 +85,12 @@ class Sphere:
 
 @dataclass(frozen=True, kw_only=True)
 class Beam:
-    """A simply supported beam.
+    """A beam, held at both ends or at one.
 
     Parameters
     ----------
     span : Quantity
-        Distance of the supports, in m.
+        Distance of the ends, in m.
     width, depth : Quantity
         Side of the section, across and along the velocity, in m.
     material : Material
@@ -93,14 +99,16 @@ class Beam:
         Shear force over G A times the shear angle, of Timoshenko's beam alone.
     shape : {"rectangle"}, default "rectangle"
         Shape of the section.
-    supports : {"pinned"}, default "pinned"
-        Supports of both ends, at which deflection and moment are zero.
+    support_left, support_right : {"pinned", "clamped", "free"}, default "pinned"
+        What holds each end: "pinned" (deflection and moment are zero; a roller is the same, without
+        an axial force), "clamped" (deflection and slope are zero), or "free" (moment and shear
+        force are zero). Others than pinned need the beam models "euler_bernoulli" or "elastic".
 
     Raises
     ------
     ValueError
         If a length is not finite and positive, the depth not below the span, the shear coefficient
-        not in (0, 1], shape or supports unknown, or the material is not a `Material`.
+        not in (0, 1], shape or a support unknown, or the material is not a `Material`.
 
     Examples
     --------
@@ -115,7 +123,8 @@ class Beam:
     material: Material
     shear_coefficient: SI[float] = SI("1", Rectangle.shear_coefficient(0.3))
     shape: str = "rectangle"
-    supports: str = "pinned"
+    support_left: str = "pinned"
+    support_right: str = "pinned"
 
     def __post_init__(self) -> None:
         instance("Beam", "material", self.material, Material)
@@ -127,7 +136,8 @@ class Beam:
         message = "must be in (0, 1]; 5/6 holds for a rectangle"
         require(k <= 1, "Beam", "shear_coefficient", self.shear_coefficient, message)
         one_of("Beam", "shape", self.shape, tuple(SHAPES))
-        one_of("Beam", "supports", self.supports, SUPPORTS)
+        one_of("Beam", "support_left", self.support_left, SUPPORTS)
+        one_of("Beam", "support_right", self.support_right, SUPPORTS)
 
     @property
     def section(self) -> Rectangle:
@@ -188,8 +198,8 @@ class Impact:
         degree of freedom), "rigid" (the beam does not move), or "solid" (3-D finite elements of
         both bodies, in which `contact` and `load` play no part).
     load : {"point", "contact_patch"}, default "point"
-        Place of the contact force: mid-span, or the contact circle (solver/contact_patch.py; not on
-        lumped beams).
+        Place of the contact force: the struck point, or the contact circle
+        (solver/contact_patch.py; not on lumped beams).
     contact_compliance : {"half_space", "beam", "strip"}, default "half_space"
         Local compliance: that of the contact law, of this beam and sphere, or of a beam that bends
         across its width, too (model/contact_compliance.py). Others than the default need
@@ -198,7 +208,9 @@ class Impact:
         Stress from the beam's bending that changes the force at which the contact yields
         (solver/contact/prestress.py). "bending" needs `beam_model="timoshenko"`.
     strike_position : Quantity, default 0.5
-        Place that the sphere strikes over the span; 0.5, mid-span, is the only one offered.
+        Place that the sphere strikes, as a share of the span from the left end; it must lie on a
+        node of the discretisation, and on an end only where that is free. Others than mid-span need
+        the beam models "euler_bernoulli" or "elastic".
 
     Raises
     ------
@@ -238,8 +250,15 @@ class Impact:
         one_of("Impact", "load", self.load, LOADS)
         one_of("Impact", "contact_compliance", self.contact_compliance, COMPLIANCES)
         one_of("Impact", "contact_prestress", self.contact_prestress, PRESTRESSES)
-        place, message = number("Impact", "strike_position", self.strike_position), "must be 0.5"
-        require(place == MID_SPAN, "Impact", "strike_position", place, f"{message}, mid-span")
+        place, beam = number("Impact", "strike_position", self.strike_position), self.beam
+        on_end = np.equal(place, 0.0) & np.equal(beam.support_left, "free")
+        on_end |= np.equal(place, 1.0) & np.equal(beam.support_right, "free")
+        on_beam = np.greater(place, 0.0) & np.less(place, 1.0) | on_end
+        message = "must be a share of the span above 0 and below 1, or the place of a free end"
+        require(on_beam, "Impact", "strike_position", place, message)
+        bends = np.isin(self.beam_model, BENDING_MODELS)
+        message = f"must be {' or '.join(BENDING_MODELS)} {OTHER_BEAM}"
+        require(bends | is_plain(self), "Impact", "beam_model", self.beam_model, message)
 
     def _repr_html_(self) -> str:
         """Return a table of all parameters for notebooks, with units."""
@@ -329,6 +348,13 @@ def corrected_impact(velocity: Quantity = 0.99) -> Impact:
         contact_prestress="bending",
         load="contact_patch",
     )
+
+
+def is_plain(impact: Impact) -> Any:
+    """Return whether the beam is pinned at both ends and struck in its middle, of each run."""
+    pinned = np.equal(impact.beam.support_left, "pinned")
+    pinned &= np.equal(impact.beam.support_right, "pinned")
+    return pinned & np.equal(impact.strike_position, MID_SPAN)
 
 
 BASES = {"paper": paper_impact, "corrected": corrected_impact}

@@ -17,7 +17,7 @@ from impactlab import wings
 from impactlab.model.checks import Column, did_you_mean
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import MODELS, Impact
-from impactlab.solver import COMPLIANCES, LOADS, PRESTRESSES, RULES, SCHEMES
+from impactlab.solver import COMPLIANCES, LOADS, PRESTRESSES, RULES, SCHEMES, SUPPORTS
 from impactlab.solver.contact import LAWS
 
 Value = float | int | str
@@ -68,6 +68,9 @@ _ROWS = (
         (f"sphere_{field}", units, f"{text} of the sphere", f"impact.sphere.material.{field}")
         for field, units, text in _MATERIAL[:4]  # a sphere does not harden, nor by rate
     ),
+    ("strike_position", "1", "place of the strike over the span", "impact.strike_position"),
+    ("support_left", "1", "left support of the beam", "impact.beam.support_left"),
+    ("support_right", "1", "right support of the beam", "impact.beam.support_right"),
     ("beam_span", "m", "span of the beam", "impact.beam.span"),
     ("beam_width", "m", "width of the beam", "impact.beam.width"),
     ("beam_depth", "m", "depth of the beam", "impact.beam.depth"),
@@ -89,6 +92,8 @@ _CHOICES = {
     "load": LOADS,
     "contact_compliance": COMPLIANCES,
     "contact_prestress": PRESTRESSES,
+    "support_left": SUPPORTS,
+    "support_right": SUPPORTS,
     "rule": RULES,
     "scheme": SCHEMES,
 }

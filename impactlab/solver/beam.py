@@ -1,16 +1,17 @@
 """The Euler-Bernoulli beam by finite differences: rho A w_tt = M_xx + p, kappa = w_xx.
 
-Deflection is positive downwards. By symmetry only the half from the left support to mid-span is
-solved. Arrays along it have n + 4 entries: 1 is the support, where w = M = 0, `mid` = n + 1 is
-mid-span, which is struck, and 0, mid + 1, mid + 2 mirror the nodes within.
+Deflection is positive downwards. The nodes from 2 to `last` are moved, `mid` among them is the
+struck one, and arrays have last + 3 entries: two nodes beyond either end set the conditions there
+(mirror()). A pinned end (w = M = 0) lies on the first node beyond, so that no moved node does
+without its neighbours; a clamped one (w = w_x = 0) on the last moved node, which is put back and
+whose section bends; a free one (M = Q = 0) there, too, with half a spacing's mass. These conditions
+make the energies below sums over the nodes, of which an end has half its share.
 
-That a half is solved, and the strike at its end, is known here alone: make_grid places the nodes,
-COPIES and copies() are the factors of works and energies, mirror() and its kin set what lies beyond
-the ends, and half_node() finds the nodes of a profile of the whole beam. Another place of the
-strike, or other supports (fields of the model's classes with one value each), would change these;
-the loops, which end at `mid`, would end at a last node of the grid's own; and the modal scheme,
-whose modes are the symmetric ones of pinned ends (modes.py), and the static shape of lumped.py
-would need others.
+A beam of equal ends that is struck in its middle is solved from the left end to mid-span: another
+kind of end, symmetric, where w is even. That a half is solved is known here alone: to make_grid, to
+`copies` of the grid and copies(), the factors of works and energies, and to half_node(), which
+finds the nodes of a profile of the whole beam. Timoshenko's beam, the modal scheme and lumped
+beams know pinned halves alone (model/case_table.py refuses others).
 
 With M = M_0 - EI kappa (section.py), M_xx is the fourth difference of w and the second one of
 M_0. M_0 changes only where sections yield, so a step is one loop over w, and the share of M_0 in
@@ -23,16 +24,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from impactlab.solver import SUPPORTS
 from impactlab.solver.jit import allocating, compiled, inlined, vectorised
 from impactlab.solver.types import ONE, TWO, Array, Index
 
 
 class BeamState(NamedTuple):
-    """The half beam's state.
+    """The state of the nodes.
 
-    w: deflection (m) at this step and the next, in turns, (2, n + 4). u = dt w_t at half steps, du
-    its increment (of the other beam models alone), plastic = dt^2/(rho A) (M_0)_xx, all in m,
-    (n + 4,).
+    w: deflection (m) at this step and the next, in turns, (2, last + 3). u = dt w_t at half steps,
+    du its increment (of the other beam models alone), plastic = dt^2/(rho A) (M_0)_xx, all in m,
+    (last + 3,).
     """
 
     w: Array
@@ -42,11 +44,13 @@ class BeamState(NamedTuple):
 
 
 class BeamGrid(NamedTuple):
-    """mid: index of mid-span, the struck node; dx (m); dt (s); mu = rho A (kg/m).
+    """mid: index of the struck node; dx (m); dt (s); mu = rho A (kg/m).
 
     per_dx2 = 1/dx^2. Shares in w of one step: factor = dt^2/(mu dx^2) of a second difference of
     moments, stiffness = factor EI/dx^2 of a fourth difference of w, push = dt^2/(mu dx) of the
-    mid-span force.
+    contact force (twice that on a free end). last: index of the last node moved; first, stop: those
+    from first to before stop are no ends. left, right: kinds of the ends. copies: number of nodes
+    of the whole beam that such a node stands for.
     """
 
     mid: int
@@ -57,8 +61,17 @@ class BeamGrid(NamedTuple):
     factor: float
     stiffness: float
     push: float
+    last: int
+    first: int
+    stop: int
+    left: int
+    right: int
+    copies: float
 
 
+PINNED, CLAMPED, FREE = (SUPPORTS.index(name) for name in ("pinned", "clamped", "free"))
+SYMMETRIC = len(SUPPORTS)
+"""Kinds of ends; symmetric is mid-span, where a half beam ends."""
 COPIES = 2.0
 """Nodes of the whole beam that a node of the half stands for; mid-span is its own mirror image."""
 _NOTHING = 1e-100
@@ -72,28 +85,71 @@ def half_spacings(nodes: int) -> int:
 
 
 @compiled
-def make_grid(nodes: int, dx: float, dt: float, mu: float, EI: float) -> BeamGrid:
-    """Return the grid of a beam with so many nodes, and what follows from it."""
-    mid, factor = half_spacings(nodes) + 1, dt**2 / (mu * dx**2)
-    return BeamGrid(mid, dx, dt, mu, 1.0 / dx**2, factor, factor * EI / dx**2, dt**2 / (mu * dx))
+def make_grid(
+    nodes: int,
+    dx: float,
+    dt: float,
+    mu: float,
+    EI: float,
+    left: int = PINNED,
+    right: int = PINNED,
+    struck: int = -1,
+) -> BeamGrid:
+    """Return the grid of a beam with so many nodes, and what follows from it.
+
+    struck: the node that is, counted from 0 at the left end; -1: the middle one.
+    """
+    middle = half_spacings(nodes)
+    struck = middle if struck < 0 else struck
+    halved = left == right and struck == middle and 2 * middle == nodes - 1
+    start = 1 if left == PINNED else 2  # index of the left end
+    right = SYMMETRIC if halved else right
+    end = start + (middle if halved else nodes - 1)
+    last = end - 1 if right == PINNED else end
+    factor, push = dt**2 / (mu * dx**2), dt**2 / (mu * dx)
+    if struck == 0 or struck == nodes - 1:
+        push *= 2.0
+    return BeamGrid(
+        start + struck,
+        dx,
+        dt,
+        mu,
+        1.0 / dx**2,
+        factor,
+        factor * EI / dx**2,
+        push,
+        last,
+        start + 1,
+        end,
+        left,
+        right,
+        COPIES if halved else 1.0,
+    )
+
+
+@compiled
+def is_end(grid: BeamGrid, i: Index) -> bool:
+    """Return whether node i is an end, or lies beyond one: it has half a spacing."""
+    return bool(i < grid.first or i >= grid.stop)
 
 
 @compiled
 def copies(grid: BeamGrid, i: Index) -> float:
-    """Return how many nodes of the whole beam node i stands for."""
-    return 1.0 if i == grid.mid else COPIES
+    """Return how many spacings of the whole beam node i stands for."""
+    return 0.5 * grid.copies if is_end(grid, i) else grid.copies
 
 
 @compiled
 def half_node(grid: BeamGrid, i: int) -> int:
     """Return which node stands for the whole beam's node i, counted from 0 at the left support."""
-    return min(i, 2 * (grid.mid - 1) - i) + 1
+    node = grid.first - 1 + i
+    return min(node, 2 * grid.mid - node) if grid.right == SYMMETRIC else node
 
 
 @allocating
 def make_beam(grid: BeamGrid) -> BeamState:
     """Return a beam at rest that has yielded nowhere."""
-    size = grid.mid + 3
+    size = grid.last + 3
     return BeamState(np.zeros((2, size)), np.zeros(size), np.zeros(size), np.zeros(size))
 
 
@@ -106,9 +162,16 @@ def rest_beam(beam: BeamState) -> None:
 
 @compiled
 def reach(w: Array, now: int, first: int) -> int:
-    """Return where the wave from mid-span begins, one step after it began at `first`."""
+    """Return where the wave from the struck node begins, one step after it began at `first`."""
     moved = abs(w[now, first]) > _NOTHING or abs(w[now, first + 1]) > _NOTHING
     return max(first - 2, 2) if moved else first
+
+
+@compiled
+def reach_right(w: Array, now: int, end: int, last: int) -> int:
+    """Return where the wave ends, as `reach` where it begins; last: of the nodes."""
+    moved = abs(w[now, end]) > _NOTHING or abs(w[now, end - 1]) > _NOTHING
+    return min(end + 2, last) if moved else end
 
 
 # What follows runs at every step, so it takes arrays: a whole BeamState takes longer to hand on.
@@ -140,14 +203,15 @@ def move(
     kappa_min: Array,
     kappa_max: Array,
     first: int,
+    stop: int,
     grid: BeamGrid,
 ) -> float:
-    """Move the nodes from `first` to mid-span by one step, without yielding further or a force.
+    """Move the nodes from `first` to before `stop` by one step, without a force or more yielding.
 
     Returns the number of sections that are now outside their elastic interval (1/m).
     """
     after, outside = 1 - now, 0.0
-    for i in range(np.uint64(first), np.uint64(grid.mid + 1)):
+    for i in range(np.uint64(first), np.uint64(stop)):
         w_i, beside = w[now, i], w[now, i - ONE] + w[now, i + ONE]
         kappa = (beside - 2.0 * w_i) * grid.per_dx2
         outside += 1.0 if kappa > kappa_max[i] else 0.0
@@ -163,16 +227,40 @@ def strike(w: Array, now: int, u: Array, F: float, grid: BeamGrid) -> None:
     """Add the contact force F (N) to a step already made, and mirror the nodes beyond the ends."""
     u[grid.mid] += grid.push * F
     w[1 - now, grid.mid] += grid.push * F
-    mirror(w, now, grid)
+    mirror(w, now, u, grid)
 
 
 @compiled
-def mirror(w: Array, now: int, grid: BeamGrid) -> None:
-    """Set the nodes beyond both ends after a step: w is odd at the support, even at mid-span."""
-    after, mid = 1 - now, grid.mid
-    w[after, 0] = -w[after, 2]
-    w[after, mid + 1] = w[after, mid - 1]
-    w[after, mid + 2] = w[after, mid - 2]
+def mirror(w: Array, now: int, u: Array, grid: BeamGrid) -> None:
+    """Set the nodes at and beyond both ends after a step."""
+    after, last = 1 - now, grid.last
+    if grid.left == PINNED:
+        w[after, 0] = -w[after, 2]
+    else:
+        _set_end(w[after], u, 2, 1, grid.left)
+    if grid.right == SYMMETRIC:
+        w[after, last + 1] = w[after, last - 1]
+        w[after, last + 2] = w[after, last - 2]
+    elif grid.right == PINNED:
+        w[after, last + 2] = -w[after, last]
+    else:
+        _set_end(w[after], u, last, -1, grid.right)
+
+
+@compiled
+def _set_end(w: Array, u: Array, end: int, inward: int, kind: int) -> None:
+    """Set the nodes at and beyond an end that is clamped or free; inward: 1 or -1.
+
+    Clamped, w is even about it. Free, the moment is zero there and odd about it; then the moment's
+    second difference is that of a node with half the mass.
+    """
+    beside, inside = w[end + inward], w[end + 2 * inward]
+    if kind == CLAMPED:
+        w[end] = u[end] = 0.0
+        w[end - inward], w[end - 2 * inward] = beside, inside
+    else:
+        w[end - inward] = 2.0 * w[end] - beside
+        w[end - 2 * inward] = 4.0 * (w[end] - beside) + inside
 
 
 @inlined
@@ -192,10 +280,10 @@ def add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: BeamGrid
     """Change M_0 of section i by so much (N m), and `plastic` with it."""
     share = grid.factor * change
     M_0[i] += change
-    plastic[i - ONE] += share  # at the support it is never read
+    # mid-span has such a neighbour on both sides, a free end half the mass; others never read it
+    plastic[i - ONE] += 2.0 * share if is_end(grid, i - ONE) else share
     plastic[i] -= 2.0 * share
-    # mid-span has such a neighbour on both sides
-    plastic[i + ONE] += COPIES * share if i + ONE == np.uint64(grid.mid) else share
+    plastic[i + ONE] += 2.0 * share if is_end(grid, i + ONE) else share
 
 
 # The energy at a full step, once u has been moved on.
@@ -205,23 +293,42 @@ def add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: BeamGrid
 def kinetic_energy(beam: BeamState, grid: BeamGrid, now: int, u_mid: float) -> float:
     """Return the kinetic energy in J, from the product of velocities half a step before and after.
 
-    With the elastic energy it is what leapfrog conserves exactly in a linear beam. u_mid (m): u at
-    mid-span before.
+    With the elastic energy it is what leapfrog conserves exactly in a linear beam. u_mid (m): u of
+    the struck node before.
     """
-    total = _kinetic_sum(beam.w, now, beam.u, beam.plastic, grid, u_mid)
+    w, u, plastic, mid = beam.w, beam.u, beam.plastic, grid.mid
+    struck = (0.5 if is_end(grid, mid) else 1.0) * u_mid
+    total = _kinetic_sum(w, now, u, plastic, grid, grid.first, min(grid.stop, mid), struck)
+    for start, stop, share in (
+        (2, min(grid.first, mid), 0.5),
+        (max(grid.first, mid + 1), grid.stop, 1.0),
+        (max(grid.stop, mid + 1), grid.last + 1, 0.5),
+    ):  # one end, the other side of the struck node, the other end
+        if start < stop:
+            total += share * _kinetic_sum(w, now, u, plastic, grid, start, stop, 0.0)
     return 0.5 * grid.mu * grid.dx / grid.dt**2 * total
 
 
 @vectorised
 def _kinetic_sum(
-    w: Array, now: int, u: Array, plastic: Array, grid: BeamGrid, u_mid: float
+    w: Array,
+    now: int,
+    u: Array,
+    plastic: Array,
+    grid: BeamGrid,
+    start: int,
+    stop: int,
+    u_mid: float,
 ) -> float:
-    half = 0.0
-    for i in range(np.uint64(2), np.uint64(grid.mid)):
+    """Return the sum of the nodes from start to before stop; u_mid: 0 without the struck one."""
+    total = 0.0
+    for i in range(np.uint64(start), np.uint64(stop)):
         beside = w[now, i - ONE] + w[now, i + ONE]
         fourth = w[now, i - TWO] + w[now, i + TWO] - 4.0 * beside + 6.0 * w[now, i]
-        half += u[i] * (u[i] - plastic[i] + grid.stiffness * fourth)
-    return COPIES * half + u[grid.mid] * u_mid
+        total += u[i] * (u[i] - plastic[i] + grid.stiffness * fourth)
+    if grid.right == SYMMETRIC:
+        total, u_mid = COPIES * total, COPIES * u_mid
+    return total + u[grid.mid] * u_mid
 
 
 @compiled
@@ -235,9 +342,16 @@ def bending_energy(beam: BeamState, M_0: Array, EI: float, grid: BeamGrid, now: 
 
 @vectorised
 def _bending_sum(w: Array, now: int, M_0: Array, EI: float, grid: BeamGrid) -> float:
-    half, mid = 0.0, grid.mid
-    for i in range(np.uint64(2), np.uint64(mid)):
+    total, share, last = 0.0, 0.5, grid.last
+    for i in range(np.uint64(grid.first), np.uint64(grid.stop)):
         kappa = (w[now, i - ONE] - 2.0 * w[now, i] + w[now, i + ONE]) * grid.per_dx2
-        half += kappa * (0.5 * EI * kappa - M_0[i])
-    kappa = 2.0 * (w[now, mid - 1] - w[now, mid]) * grid.per_dx2
-    return COPIES * half + kappa * (0.5 * EI * kappa - M_0[mid])
+        total += kappa * (0.5 * EI * kappa - M_0[i])
+    if grid.right == SYMMETRIC:
+        total, share = COPIES * total, 0.5 * COPIES
+    if grid.left == CLAMPED:
+        kappa = 2.0 * w[now, 3] * grid.per_dx2
+        total += share * kappa * (0.5 * EI * kappa - M_0[2])
+    if grid.right == CLAMPED or grid.right == SYMMETRIC:
+        kappa = 2.0 * (w[now, last - 1] - w[now, last]) * grid.per_dx2
+        total += share * kappa * (0.5 * EI * kappa - M_0[last])
+    return total

@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.beam import COPIES, BeamGrid, BeamState, mirror
+from impactlab.solver.beam import SYMMETRIC, BeamGrid, BeamState, mirror
 from impactlab.solver.contact.history import Pair, yield_stress
 from impactlab.solver.contact.switch import radius
 from impactlab.solver.jit import compiled
@@ -51,7 +51,7 @@ def _twice_integrated(x: float, a: float) -> float:
 
 @compiled
 def node_share(k: int, dx: float, a: float) -> float:
-    """Return the share of the force on the node k spacings from mid-span."""
+    """Return the share of the force on the node k spacings from the struck one."""
     x = k * dx
     beside = _twice_integrated(x + dx, a) + _twice_integrated(abs(x - dx), a)
     return (beside - 2.0 * _twice_integrated(x, a)) / dx
@@ -69,25 +69,30 @@ def wave_share(z: float) -> float:
 def spread_over_nodes(
     beam: BeamState, grid: BeamGrid, now: int, F: float, a: float
 ) -> tuple[float, float, int]:
-    """Spread a force F (N), with which a step was made at mid-span, over the radius a (m).
+    """Spread a force F (N), with which a step was made at the struck node, over the radius a (m).
 
-    Returns (how far the mean under the pressure has moved beyond mid-span, m; half the work of F
-    beside mid-span, J; number of nodes pushed on either side of it).
+    It is not spread beyond an end. Returns (how far the mean under the pressure has moved beyond
+    the struck node, m; half the work of F beside it, J; number of nodes pushed on either side).
     """
     u, du, after, mid = beam.u, beam.du, beam.w[1 - now], grid.mid
+    halved, room = grid.right == SYMMETRIC, mid - grid.first
+    if not halved:
+        room = min(room, grid.stop - 1 - mid)
     shares, mean, pushed = 0.0, 0.0, 0
-    while pushed < mid - 2 and pushed * grid.dx < a:
+    while pushed < room and pushed * grid.dx < a:
         pushed += 1
-        i, share = mid - pushed, node_share(pushed, grid.dx, a)
+        left, share = mid - pushed, node_share(pushed, grid.dx, a)
+        right = left if halved else mid + pushed
         change = grid.push * F * share
-        du[i] += change
-        u[i] += change
-        after[i] += change
+        for i in range(left, right + 1, max(right - left, 1)):
+            du[i] += change
+            u[i] += change
+            after[i] += change
         shares += share
-        mean += share * u[i]
-    back = COPIES * shares * grid.push * F
+        mean += share * (0.5 * (u[left] + u[right]))
+    back = 2.0 * shares * grid.push * F
     du[mid] -= back
     u[mid] -= back
     after[mid] -= back
-    mirror(beam.w, now, grid)
-    return COPIES * (mean - shares * u[mid]), 0.5 * COPIES * F * mean, pushed
+    mirror(beam.w, now, u, grid)
+    return 2.0 * (mean - shares * u[mid]), F * mean, pushed

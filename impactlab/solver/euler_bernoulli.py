@@ -15,6 +15,7 @@ from impactlab.solver.beam import (
     move,
     move_virgin,
     reach,
+    reach_right,
     strike,
 )
 from impactlab.solver.contact_patch import spread_over_nodes
@@ -33,9 +34,13 @@ from impactlab.solver.types import Array, Record
 
 @allocating
 def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Array:
-    """Return the first node that the wave has reached, and that from which on some have yielded."""
-    front = np.empty(2, dtype=np.int64)
-    front[0], front[1] = grid.mid, grid.mid + 1
+    """Return the first and the last node that the wave has reached, and those that have yielded.
+
+    Of each, the first and the last; none between last and first.
+    """
+    front = np.empty(4, dtype=np.int64)
+    front[0] = front[2] = grid.mid
+    front[1], front[3] = grid.mid + 1, grid.mid
     return front
 
 
@@ -47,13 +52,20 @@ def _step(state: State, now: int, F: float) -> None:
         w, now, None, beam.plastic, plastic.M_0, plastic.on_tangent, plastic.tangent, grid
     ):
         leave_tangents(beam, now, None, plastic, section, grid)
-    outside = move_virgin(w, now, u, front[0], front[1], grid, section.yield_curvature)
-    outside += move(w, now, u, beam.plastic, plastic.kappa_min, plastic.kappa_max, front[1], grid)
+    first, stop, end = front[1], front[3] + 1, front[2] + 1
+    outside = move_virgin(w, now, u, front[0], first, grid, section.yield_curvature)
+    outside += move(
+        w, now, u, beam.plastic, plastic.kappa_min, plastic.kappa_max, first, stop, grid
+    )
+    if stop < end:
+        outside += move_virgin(w, now, u, stop, end, grid, section.yield_curvature)
     if outside > 0.0:
-        outermost = begin_tangents(beam, now, None, outside, plastic, section, grid, u, w[1 - now])
-        front[1] = min(front[1], max(outermost - 1, 2))
+        away = begin_tangents(beam, now, None, outside, plastic, section, grid, u, w[1 - now]) + 1
+        front[1] = min(front[1], max(grid.mid - away, 2))
+        front[3] = max(front[3], min(grid.mid + away, grid.last))
     strike(w, now, u, F, grid)
     front[0] = reach(w, 1 - now, front[0])
+    front[2] = reach_right(w, 1 - now, front[2], grid.last)
 
 
 @compiled
@@ -78,9 +90,9 @@ def deflected(state: State, now: int) -> None:
 @compiled
 def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
     ahead, work, pushed = spread_over_nodes(state.beam, state.grid, now, F, a)
-    front, first = state.extra, max(state.grid.mid - pushed - 2, 2)
-    if first < front[0]:
-        front[0] = first
+    front, mid = state.extra, state.grid.mid
+    front[0] = min(front[0], max(mid - pushed - 2, 2))
+    front[2] = max(front[2], min(mid + pushed + 2, state.grid.last))
     return ahead, -work
 
 

@@ -34,12 +34,13 @@ from impactlab.solver.types import ONE, TWO, Array, Index
 class PlasticState(NamedTuple):
     """The memory of each section; indices as in beam.py.
 
-    M_0 (N m) and kappa_min, kappa_max (1/m): the elastic interval, (n + 4,); without limits in a
-    section on its tangent. on_tangent: the number of these, then which they are, (n + 5,).
-    tangent: (n + 4, 4), of these the direction (1 or -1), the growth of M_0 with kappa (N m2), the
-    curvature at which a further fibre yields, and the present one (1/m). plastic_strain and peeq
-    of the fibres, (n + 4, P // 2). flowed: where the yield stress depends on the rate, a section's
-    curvature after its last flow (1/m) and the work of the overstress (J/m), (n + 4, 2).
+    M_0 (N m) and kappa_min, kappa_max (1/m): the elastic interval, (last + 3,); without limits in a
+    section on its tangent. on_tangent: the number of these, then which they are, (last + 4,).
+    tangent: (last + 3, 4), of these the direction (1 or -1), the growth of M_0 with kappa (N m2),
+    the curvature at which a further fibre yields, and the present one (1/m). plastic_strain and
+    peeq of the fibres, (last + 3, P // 2). flowed: where the yield stress depends on the rate, a
+    section's curvature after its last flow (1/m) and the work of the overstress (J/m), as long as
+    M_0, by 2.
     """
 
     M_0: Array
@@ -55,7 +56,7 @@ class PlasticState(NamedTuple):
 @allocating
 def make_plastic_state(grid: BeamGrid, section: FibreSection) -> PlasticState:
     """Return the state of sections that have never yielded."""
-    size, fibres = grid.mid + 3, section.z.size
+    size, fibres = grid.last + 3, section.z.size
     return PlasticState(
         np.zeros(size),
         np.full(size, -section.yield_curvature),
@@ -165,22 +166,27 @@ def begin_tangents(
     """Bend the `outside` sections that have left their interval.
 
     Adds what that changes to u and, unless it is empty, to w: a step is mended that has been made
-    before. Returns the first section looked at.
+    before. Returns how far from the struck node the last section looked at lies, in spacings.
     """
-    i = np.uint64(grid.mid + 1)
-    while outside > 0.0 and i > TWO:  # from mid-span, near which they most often are
-        i -= ONE
-        kappa = curvature(beam.w, now, psi, grid, i)
-        if kappa > plastic_state.kappa_max[i] or kappa < plastic_state.kappa_min[i]:
-            outside -= 1.0
-            near = (beam.plastic[i - ONE], beam.plastic[i], beam.plastic[i + ONE])
-            _yield(beam, plastic_state, section, section.rate, grid, i, kappa)
-            for j in range(max(i - ONE, TWO), i + TWO):  # the support does not move
-                change = beam.plastic[j] - near[j + ONE - i]
-                u[j] += change
-                if w.size > 0:
-                    w[j] += change
-    return int(i)
+    away, mid, last = -1, grid.mid, grid.last
+    while outside > 0.0 and away < max(mid - 2, last - mid):
+        away += 1  # from the struck node, near which they most often are
+        for place in (mid - away, mid + away):
+            if place < 2 or place > last or (outside == 0.0 and away == 0):
+                continue
+            i = np.uint64(place)
+            kappa = curvature(beam.w, now, psi, grid, i)
+            if kappa > plastic_state.kappa_max[i] or kappa < plastic_state.kappa_min[i]:
+                outside -= 1.0
+                near = (beam.plastic[i - ONE], beam.plastic[i], beam.plastic[i + ONE])
+                _yield(beam, plastic_state, section, section.rate, grid, i, kappa)
+                # a support does not move
+                for j in range(max(i - ONE, TWO), min(i + ONE, np.uint64(last)) + ONE):
+                    change = beam.plastic[j] - near[j + ONE - i]
+                    u[j] += change
+                    if w.size > 0:
+                        w[j] += change
+    return away
 
 
 @compiled
@@ -272,7 +278,7 @@ def plastic_energy(
 ) -> tuple[float, float]:
     """Return (stored at zero curvature, dissipated) energy in J, of fibres that are up to date."""
     stored, dissipated = 0.0, 0.0
-    for i in range(2, grid.mid + 1):
+    for i in range(2, grid.last + 1):
         if plastic_state.peeq[i, 0] > 0.0:  # the outermost fibre yields first
             stored_i, dissipated_i = plastic_energies(
                 section, plastic_state.plastic_strain, plastic_state.peeq, i

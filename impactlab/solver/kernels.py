@@ -18,7 +18,7 @@ from impactlab.solver import (
     strip,
     timoshenko,
 )
-from impactlab.solver.beam import half_node, make_beam, make_grid, rest_beam
+from impactlab.solver.beam import half_node, make_beam, rest_beam
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.contact.switch import DAMPED
 from impactlab.solver.fibre_plasticity import (
@@ -30,7 +30,7 @@ from impactlab.solver.jit import allocating, compiled, inlined
 from impactlab.solver.leapfrog import time_loop
 from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE
 from impactlab.solver.section import FibreSection, Room, cut_section, make_room, with_rate
-from impactlab.solver.stability import discretise
+from impactlab.solver.stability import discretise, grid_of, struck_node
 from impactlab.solver.state import BeamModel, State
 from impactlab.solver.types import CONTACT_PATCH, MODAL, Array, Record
 
@@ -50,6 +50,9 @@ def _end_of_alike(cases: Array, start: int) -> int:
     while stop < cases.size:
         case = cases[stop]
         if case.nodes != first.nodes or case.points != first.points:
+            break
+        ends = case.support_left != first.support_left, case.support_right != first.support_right
+        if ends[0] or ends[1] or struck_node(case) != struck_node(first):
             break
         stop += 1
     return stop
@@ -143,7 +146,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
         while stop < cases.size:
             start, first = stop, cases[stop]
             stop = _end_of_alike(cases, start)
-            room, size = make_room(first), make_grid(first.nodes, 1.0, 1.0, 1.0, 1.0)
+            room, size = make_room(first), grid_of(first, 1.0, 1.0, 1.0)
             section = cut(first, fibres[start], room)
             beam, plastic = make_beam(size), make_plastic_state(size, section)
             extra = make(first, section, size)

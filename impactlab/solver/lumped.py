@@ -68,7 +68,7 @@ def _step(state: State, now: int, F: float) -> None:
     for i in range(2, mid + 1):
         beam.w[1 - now, i] = lumped.shape[i] * w_mid
     beam.w[1 - now, mid] = w_mid
-    mirror(beam.w, now, state.grid)
+    mirror(beam.w, now, beam.u, state.grid)
 
 
 @compiled

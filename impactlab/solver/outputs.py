@@ -33,6 +33,7 @@ HARDENING_OUTSIDE_DATA = 16
 SPHERE_YIELD_OUTSIDE_DATA = 32
 STIFFNESS_RATIO_OUTSIDE_DATA = 64
 CONTACT_CIRCLE_OUTSIDE_DATA = 128
+STRUCK_NEAR_END = 256
 
 
 SHORT_PAUSE = 0.05
@@ -82,7 +83,9 @@ RESPONSES = (
         "below zero where the contact law itself leaves a bulge, as Stronge's does for largest "
         "indentations of 1 to 1.998 times that of first yield; `remarks` says so, too",
     ),
-    Response("maximum_deflection", "m", "largest mid-span deflection", "deflection_still_growing"),
+    Response(
+        "maximum_deflection", "m", "largest deflection under the sphere", "deflection_still_growing"
+    ),
     Response("impulse", "N s", "impulse of the contact force, all contacts", "in_contact_at_end"),
     Response(
         "mean_force",

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from impactlab.solver.beam import COPIES, BeamGrid
+from impactlab.solver.beam import BeamGrid
 from impactlab.solver.contact import LAWS, finite_element
 from impactlab.solver.contact.finite_element import (
     LARGEST_CIRCLE,
@@ -39,6 +39,7 @@ from impactlab.solver.outputs import (
     SPHERE_NOT_LEAVING,
     SPHERE_YIELD_OUTSIDE_DATA,
     STIFFNESS_RATIO_OUTSIDE_DATA,
+    STRUCK_NEAR_END,
     YIELD_RATIO_OUTSIDE_DATA,
 )
 from impactlab.solver.types import Array, Record
@@ -97,8 +98,12 @@ def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) ->
 def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> None:
     """Remark which inputs lie outside the data of the law finite_element and of the corrections.
 
+    Also a strike so near an end that the body under the contact is no half-space.
+
     Those of materials count where the contact yields, with the law, a strip or prestress.
     """
+    if min(case.strike_position, 1.0 - case.strike_position) * case.beam_span < case.beam_depth:
+        answer.remarks |= STRUCK_NEAR_END
     S_y = yield_stress(contact, pair)
     corrected = case.contact_prestress > 0 or case.width_inertia > 0.0
     if corrected or pair.compliance != 0.0:
@@ -138,7 +143,7 @@ def read_rebound(answer: Record, case: Record, events: Record) -> None:
 def read_beam(
     answer: Record, case: Record, events: Record, peeq: Array, grid: BeamGrid, dissipated: float
 ) -> None:
-    """Fill in deflection and plastic strain; peeq: of the half beam, see PlasticState."""
+    """Fill in deflection and plastic strain; peeq: see PlasticState."""
     if events.w > events.w_max:
         answer.status |= DEFLECTION_STILL_GROWING
     else:
@@ -147,16 +152,20 @@ def read_beam(
     answer.remote_plastic_strain = 0.0
     answer.plastic_zone_length = 0.0
     strain_before = 0.0
-    for i in range(2, grid.mid + 1):
+    for i in range(2, grid.last + 1):
         strain = 0.0
         for j in range(peeq.shape[1]):
             strain = max(strain, peeq[i, j])
         answer.peak_plastic_strain = max(answer.peak_plastic_strain, strain)
-        if (grid.mid - i) * grid.dx > case.beam_depth:
+        if abs(grid.mid - i) * grid.dx > case.beam_depth:
             answer.remote_plastic_strain = max(answer.remote_plastic_strain, strain)
         share = share_above(strain_before, strain, PLASTIC_ZONE_STRAIN)
-        answer.plastic_zone_length += COPIES * grid.dx * share
+        if i > 2 or grid.first == 2:  # an end that is no pinned one has no spacing before it
+            answer.plastic_zone_length += grid.copies * grid.dx * share
         strain_before = strain
+    if grid.stop > grid.last:  # pinned
+        share = share_above(strain_before, 0.0, PLASTIC_ZONE_STRAIN)
+        answer.plastic_zone_length += grid.dx * share
     answer.plastic_dissipation = dissipated
 
 

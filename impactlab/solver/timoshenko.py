@@ -92,7 +92,7 @@ def move(grid: BeamGrid, beam: BeamState, shear: Shear, now: int, F: float, per_
     mirror_halfway(psi, mid)
     mirror_halfway(Q, mid)
     _shift(beam.w, now, beam.u, beam.du, Q, grid.push, F, mid)
-    mirror(beam.w, now, grid)
+    mirror(beam.w, now, beam.u, grid)
 
 
 @inlined

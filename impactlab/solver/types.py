@@ -45,16 +45,18 @@ CASE = record(
     beam_density beam_youngs_modulus beam_poissons_ratio beam_yield_stress
     beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus
     beam_rate_coefficient beam_rate_exponent beam_rate_sensitivity beam_reference_rate courant
+    strike_position
     compliance bending_compliance stress_along stress_across
     width_stiffness width_inertia width_lever width_twist axis_compliance axis_bending
     """,
-    integers="contact beam_model load contact_prestress nodes points rule scheme",
+    integers="contact beam_model load contact_prestress support_left support_right nodes points"
+    " rule scheme",
 )
 """Record type of the case table: one record per run, everything the kernels need to know of it.
 
 The fields are the parameters of model/parameters.py, in SI, with contact law, beam model, load,
-rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS, RULES and SCHEMES) and
-the sphere's mass resolved; the duration in s; and what follows from them: of the section
-(model/section.py) rho A, rho I, k G A and the stress in the outermost fibre over the bending
-moment, and of contact and strip those of model/contact_compliance.py.
+supports, rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS, SUPPORTS,
+RULES and SCHEMES) and the sphere's mass resolved; the duration in s; and what follows from them: of
+the section (model/section.py) rho A, rho I, k G A and the stress in the outermost fibre over
+the bending moment, and of contact and strip those of model/contact_compliance.py.
 """

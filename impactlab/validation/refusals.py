@@ -81,6 +81,7 @@ _ROOMY: Base = with_values(
     paper_impact(),
     Discretisation(),
     dict.fromkeys(("sphere_youngs_modulus", "beam_youngs_modulus", "beam_span"), 1e300)
-    | dict.fromkeys(("sphere_yield_stress", "beam_yield_stress", "beam_depth"), 1e-300),
+    | dict.fromkeys(("sphere_yield_stress", "beam_yield_stress", "beam_depth"), 1e-300)
+    | dict.fromkeys(("support_left", "support_right"), "free"),
 )
 """An impact with which only the limits of a parameter itself apply."""

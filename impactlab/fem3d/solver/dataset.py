@@ -122,6 +122,7 @@ IMPACT_PARAMETERS = [
     for name, entry in PARAMETERS.items()
     if entry.path[0] == "impact"
     and name not in ("contact", *TIMOSHENKO_OPTIONS, "beam_model", "load", "shear_coefficient")
+    and name not in ("strike_position", "support_left", "support_right")
 ]
 """Parameters of an impact, without those of the beam models alone."""
 

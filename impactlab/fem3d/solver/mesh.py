@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 from impactlab.fem3d.solver.estimates import checked_patch, checked_size, uniform
 from impactlab.fem3d.solver.impulses import bulges
 from impactlab.model.checks import positive
-from impactlab.model.impact import Impact
+from impactlab.model.impact import MID_SPAN, Impact
 from impactlab.types import Floats
 
 Integers = NDArray[np.int32]
@@ -134,8 +134,23 @@ def plane_faces(
     return element, corners[element, face]
 
 
+def _refuse_other_beams(impact: Impact) -> None:
+    """Raise ValueError unless both planes of symmetry are the impact's, and its ends pinned."""
+    for owner, field, plain in (
+        (impact.beam, "support_left", "pinned"),
+        (impact.beam, "support_right", "pinned"),
+        (impact, "strike_position", MID_SPAN),
+    ):
+        if (value := getattr(owner, field)) != plain:
+            raise ValueError(
+                f"{type(owner).__name__}.{field} = {value!r}: the 3-D model is a quarter of a "
+                f"pinned beam struck at mid-span: set it to {plain!r}"
+            )
+
+
 def check_mesh(mesh: Mesh, impact: Impact) -> None:
     """Raise ValueError where the mesh is that of other bodies."""
+    _refuse_other_beams(impact)
     beam, nodes = impact.beam, mesh.nodes
     for name, meshed, length in (
         ("beam's span", 2.0 * nodes[mesh.support, 0].max(), beam.span),
@@ -194,8 +209,10 @@ def quarter_mesh(
     in m (None: a sixth of the beam's depth).
 
     Raises ValueError when a length is not positive, the ratio not above 1, the element size beyond
-    reason, or the patch does not fit on beam and sphere.
+    reason, the patch does not fit on beam and sphere, or the beam is no pinned one struck at
+    mid-span.
     """
+    _refuse_other_beams(impact)
     size, beam = checked_size(impact, element_size), impact.beam
     if positive("mesh", "ratio", ratio) <= 1.0:
         raise ValueError(f"mesh.ratio = {ratio!r}: must be above 1")

@@ -14,7 +14,9 @@ from impactlab.methods.distributions import Choice, Distribution
 from impactlab.methods.grid import Grid
 from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
+from impactlab.model.case_table import between_nodes
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
+from impactlab.model.impact import MID_SPAN, OTHER_BEAM
 from impactlab.model.parameters import PARAMETERS, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.model.quantities import shown
@@ -172,6 +174,7 @@ def _impacts(file: StudyFile) -> Reasons:
             "has leapfrog alone: set scheme: leapfrog, or take out the beam model"
         )
         yield key_of("scheme", sampling), reason
+    yield from _other_beams(file, models, schemes)
     lumped = [name for name in LUMPED_MODELS if name in models]
     if lumped and "contact_patch" in values_of(sampling, "load", file.impact.load):
         reason = f"contact_patch is not for {lumped[0]}, which moves as one mass: set load: point"
@@ -181,6 +184,35 @@ def _impacts(file: StudyFile) -> Reasons:
         ours = sorted(set(map(str, options)) - {plain})
         if ours and set(models) - {"timoshenko", *wings.models()}:
             yield key_of(name, sampling), f"{ours[0]} {TIMOSHENKO_ALONE}"
+
+
+def _other_beams(file: StudyFile, models: tuple[Value, ...], schemes: set[Value]) -> Reasons:
+    """Check that other ends and places have a model and a scheme, and that a node is struck."""
+    sampling, beam, grid = file.sampling, file.impact.beam, file.discretisation[0]
+    places = values_of(sampling, "strike_position", file.impact.strike_position)
+    key = key_of("strike_position", sampling)
+    if isinstance(sampling.varied.get("strike_position"), Distribution):
+        yield key, "must be struck on a node: list places with method: grid, or fix one"
+        return
+    for place in map(float, places):
+        for nodes in map(int, values_of(sampling, "nodes", grid.nodes)):
+            if reason := between_nodes(place, nodes):
+                yield key, f"{place:g} {reason}"
+                return
+    if file.discretisation[1] is not None and set(places) != {MID_SPAN}:
+        yield "discretisation.auto", "needs strike_position: 0.5: state the discretisation"
+    supports = {
+        support
+        for side in ("left", "right")
+        for support in values_of(sampling, f"support_{side}", getattr(beam, f"support_{side}"))
+    }
+    if supports == {"pinned"} and set(places) == {MID_SPAN}:
+        return
+    if set(models) - set(BENDING_MODELS):
+        reason = f"must be {' or '.join(BENDING_MODELS)} {OTHER_BEAM}"
+        yield key_of("beam_model", sampling), reason
+    if schemes:
+        yield key_of("scheme", sampling), f"must be leapfrog {OTHER_BEAM}"
 
 
 def _further_models(file: StudyFile) -> Reasons:

@@ -26,6 +26,9 @@ PAPER: dict[str, Any] = {
     "courant": 0.5,
     "nodes": 201,
     "scheme": SCHEMES.index("leapfrog"),
+    "support_left": 0,
+    "support_right": 0,
+    "strike_position": 0.5,
     "beam_model": BEAM_MODELS.index("euler_bernoulli"),
 }
 

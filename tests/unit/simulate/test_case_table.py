@@ -43,6 +43,7 @@ TOGETHER = tuple(name for name in PARAMETERS if name != SIZES[1])
 WORDS = {"contact": LAWS, "beam_model": BEAM_MODELS[:2], "load": LOADS}
 WORDS |= {name: (word,) for name, word in TIMOSHENKO_OPTIONS.items()}
 WORDS |= {"rule": RULES, "scheme": SCHEMES}
+WORDS |= {"support_left": ("pinned",), "support_right": ("pinned",), "strike_position": (0.5,)}
 COUNTS = {"nodes": (5, 19, 1201), "points": (2, 3, 64)}
 
 
@@ -81,6 +82,26 @@ def test_columns_give_the_table_of_single_runs_bit_by_bit(names, one_by_one, mon
         many = case_table(IMPACT, GRID, duration=DURATION, varied=given)
         assert many.tobytes() == alone.tobytes()
         assert many.dtype == alone.dtype
+
+
+def test_ends_and_places_in_columns_are_those_of_single_runs(one_by_one):
+    varied = {
+        "support_left": ["pinned", "clamped", "free", "free"],
+        "support_right": ["clamped", "free", "pinned", "free"],
+        "strike_position": [0.5, 1.0, 0.05, 0.0],
+        "velocity": [1.0, 2.0, 3.0, 4.0],
+    }
+    alone = one_by_one(varied)
+    assert case_table(IMPACT, GRID, duration=DURATION, varied=varied).tobytes() == alone.tobytes()
+    assert alone["strike_position"].tolist() == varied["strike_position"]
+    varied["strike_position"][1] = 0.0
+    with pytest.raises(
+        ValueError, match=r"^run 1 .*: Impact\.strike_position = 0\.0: must be a share"
+    ):
+        case_table(IMPACT, GRID, duration=DURATION, varied=varied)
+    varied["strike_position"][1] = 0.33
+    with pytest.raises(ValueError, match=r"^run 1: strike_position = 0\.33: lies between two"):
+        case_table(IMPACT, GRID, duration=DURATION, varied=varied)
 
 
 WRONG = {

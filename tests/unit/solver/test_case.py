@@ -4,7 +4,7 @@ import pytest
 
 from impactlab.fem3d.wing import SIZES
 from impactlab.model.parameters import PARAMETERS
-from impactlab.solver import BEAM_MODELS, LOADS, RULES, SCHEMES
+from impactlab.solver import BEAM_MODELS, LOADS, RULES, SCHEMES, SUPPORTS
 from impactlab.solver.contact import LAWS
 from impactlab.solver.types import CASE
 
@@ -31,7 +31,7 @@ def test_fields_are_the_parameters_and_the_duration():
 
 def test_a_record_has_every_value_in_its_place(make_case):
     names = {"contact": "hertz", "beam_model": "elastic", "rule": "layers"}
-    names |= {"scheme": "modal", "load": "contact_patch"}
+    names |= {"load": "contact_patch", "support_left": "clamped", "support_right": "free"}
     numbers = {
         name: 0.5 + number / 100
         for number, (name, entry) in enumerate(OF_KERNELS.items())
@@ -40,7 +40,7 @@ def test_a_record_has_every_value_in_its_place(make_case):
     ratios = {"sphere_poissons_ratio": 0.1, "beam_poissons_ratio": 0.2}
     moduli = {"sphere_youngs_modulus": 1e9, "beam_youngs_modulus": 2e9, "beam_span": 9.0}
     moduli |= {"beam_rate_exponent": 4.0, "beam_rate_sensitivity": 0.0}
-    values = numbers | ratios | moduli | {"nodes": 19, "points": 3}
+    values = numbers | ratios | moduli | {"nodes": 19, "points": 3, "strike_position": 5 / 18}
     case = make_case(duration=0.7, **values, **names)
     numbers_of_names = {
         "contact": LAWS.index("hertz"),
@@ -48,7 +48,9 @@ def test_a_record_has_every_value_in_its_place(make_case):
         "load": LOADS.index("contact_patch"),
         "contact_prestress": 0,
         "rule": RULES.index("layers"),
-        "scheme": SCHEMES.index("modal"),
+        "scheme": SCHEMES.index("leapfrog"),
+        "support_left": SUPPORTS.index("clamped"),
+        "support_right": SUPPORTS.index("free"),
     }
     expected = values | numbers_of_names | {"duration": 0.7} | dict.fromkeys(DERIVED, 0.0)
     assert {name: case[name] for name in CASE.names if name not in OF_SECTION} == expected
