@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from impactlab.solver import event_tracker
+from impactlab.solver import event_tracker, kink
 from impactlab.solver.contact import history as contact_history
 from impactlab.solver.contact import prestress, rate
 from impactlab.solver.contact_patch import contact_radius
@@ -121,7 +121,7 @@ def _audit(model: BeamModel) -> Callable[..., float]:
 def _contact(model: BeamModel, extended: bool) -> Callable[..., tuple[float, float, float]]:
     """Return the contact of a sphere with a model of the beam; extended: see kernels.py."""
     mid_curvature, sag, beneath = model.curvature, model.sag, model.beneath
-    lift, moments = model.lift, model.moments
+    lift, moments, bend_back = model.lift, model.moments, model.bend_back
     force = damped_force if extended else contact_force
 
     @inlined
@@ -149,11 +149,12 @@ def _contact(model: BeamModel, extended: bool) -> Callable[..., tuple[float, flo
             approach = delta - contact.shift
         if extended and pair.rate.D > 0.0:
             rate.strain(contact, pair, approach, grid.dt)
-        if moments is not None and pair.prestress[0] > 0.0:
+        if moments is not None and bend_back is not None and pair.prestress[0] > 0.0:
             along, across = moments(state, now)
             contact.stress_along = case.stress_per_moment * along
             contact.stress_across = case.stress_per_moment * across
             F = prestressed_force(contact, events, pair, approach, t, grid.dt)
+            bend_back(state, now, contact, kink.growth(case, contact, pair))
         elif extended and pair.rate.D > 0.0:
             furthest, before = contact.approach_m, rate.curve_of(contact)
             F = force(contact, events, pair, approach, t, grid.dt)
@@ -199,7 +200,8 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
         contact.n = 1.5
         event_tracker.start(events)
         while step <= steps:
-            t, w_mid, u_mid = step * dt, w[now, mid], u[mid]
+            t, u_mid = step * dt, u[mid]
+            w_mid = w[now, mid] - kink.height(grid, contact.kink)
             F, approach, delta = touch(case, state, contact, events, now, w_s - w_mid - ahead, t)
             v_after = v_s + dt * (case.gravity - F * per_mass)
             event_tracker.update_events(events, approach, contact.delta_r, w_mid, F, v_s, t, dt)
@@ -237,6 +239,7 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
                     return -1
             w_s, v_s, now = w_s + dt * v_after, v_after, 1 - now
             step += 1
+        kink.straighten(w, grid, contact.kink)
         return 1 - now
 
     return march

@@ -53,7 +53,8 @@ class BeamModel(NamedTuple):
     above. sag(state): how far the middle of mid-span's section lies below its mean, m; None: not at
     all. beneath(state, now, F): how far the axis lies below that, m; lift(state, contact, F): how
     far the contact lifts it, m. moments(state, now): at mid-span, along the beam and across its
-    width, both times the width, N m.
+    width, both times the width, N m. bend_back(state, now, contact, growth): let the
+    kink of kink.py grow by so much, rad.
     """
 
     make: Callable[..., Any]
@@ -69,3 +70,4 @@ class BeamModel(NamedTuple):
     beneath: Callable[..., float] | None = None
     lift: Callable[..., float] | None = None
     moments: Callable[..., tuple[float, float]] | None = None
+    bend_back: Callable[..., None] | None = None

@@ -45,6 +45,7 @@ from impactlab.solver.beam import COPIES, BeamGrid, mirror_even
 from impactlab.solver.contact.axis_lift import axis_lift
 from impactlab.solver.fibre_plasticity import curvature, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, vectorised
+from impactlab.solver.kink import bend_back
 from impactlab.solver.section import FibreSection
 from impactlab.solver.state import State
 from impactlab.solver.timoshenko import Shear
@@ -201,6 +202,17 @@ def _moments(state: State, now: int) -> tuple[float, float]:
     return float(state.plastic.M_0[mid] - section.stiffness * kappa + strip.nu * across), across
 
 
+@compiled
+def _bend_back(state: State, now: int, contact: Record, growth: float) -> None:
+    if growth == 0.0:
+        return
+    before, _ = _moments(state, now)
+    bend_back(state.beam.w, now, state.extra.shear.psi, state.grid, growth)
+    after, _ = _moments(state, now)
+    contact.kink += growth
+    contact.kink_work += 0.5 * (before + after) * growth
+
+
 MODEL = timoshenko.MODEL._replace(
     make=_make,
     step=_step,
@@ -210,4 +222,5 @@ MODEL = timoshenko.MODEL._replace(
     beneath=_beneath,
     lift=_lift,
     moments=_moments,
+    bend_back=_bend_back,
 )

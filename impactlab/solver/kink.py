@@ -1,0 +1,74 @@
+"""The kink that a dent leaves in the beam: with `contact_prestress: bending`.
+
+Metal that flows beneath the contact is pushed along the beam, too, which stretches the struck face
+and kinks the beam upwards by an angle theta:
+
+    d theta = z dV/I, z = H/2 - 1.41 sqrt(R delta_m),
+    dV = 1.07 R (1 - 1.57 s - 4.65 s^2) d(delta_m delta_r)/(1 + <x - 75>/94),
+
+as long as it grows. V: plastic strain along the beam, summed over the volume beneath the contact;
+s: compression of the struck face by bending over the yield stress; x = delta_m/delta_y; I: second
+moment of the section. Under more compression (s > 0.32) metal flows across the beam, and in the end
+weakens the section: that is left out, since kinks that shrink made the impulse at 20 m/s worse.
+The numbers were fitted to 3-D finite elements, three beams from 0.5 to 10 m/s, 15 <= x <= 250,
+whose theta they meet within 6 % up to 5 m/s; at 10 m/s it is 1.7 times too large. All are of two
+like steels: nothing is known of other metals.
+
+The kink needs no stress: a beam of two straight halves. So the kernels hold the deflection beyond
+that, `w + theta x/2`, x the distance from the support, in which all moments are as they were; the
+velocity is that of the beam. Against the moment M at mid-span the kink takes the work M d theta
+from the contact.
+"""
+
+from __future__ import annotations
+
+import math
+
+from impactlab.solver.beam import BeamGrid, mirror, mirror_halfway
+from impactlab.solver.contact.history import Pair, yield_stress
+from impactlab.solver.contact.stronge import yield_indentation
+from impactlab.solver.jit import compiled
+from impactlab.solver.types import Array, Record
+
+VOLUME, SHALLOW, WIDTH, DEPTH = 1.07, 75.0, 94.0, 1.41
+BENDING = 1.57, 4.65
+
+
+@compiled
+def growth(case: Record, contact: Record, pair: Pair) -> float:
+    """Return how far the kink (rad) has grown since the last call; keeps what it has seen."""
+    area = contact.delta_m * contact.delta_r
+    grown, contact.dent_area = area - contact.dent_area, area
+    if grown <= 0.0:
+        return 0.0
+    S_y = yield_stress(contact, pair)
+    deeper = contact.delta_m / yield_indentation(pair.E, pair.R, S_y) - SHALLOW
+    s = contact.stress_along / S_y
+    share = (1.0 - s * (BENDING[0] + BENDING[1] * abs(s))) / (1.0 + max(deeper, 0.0) / WIDTH)
+    z = max(0.5 * case.beam_depth - DEPTH * math.sqrt(pair.R * contact.delta_m), 0.0)
+    second_moment = case.beam_width * case.beam_depth**3 / 12.0
+    return float(VOLUME * pair.R * max(share, 0.0) * grown * z / second_moment)
+
+
+@compiled
+def height(grid: BeamGrid, kink: float) -> float:
+    """Return how far the kink (rad) raises mid-span (m)."""
+    return 0.5 * kink * (grid.mid - 1) * grid.dx
+
+
+@compiled
+def bend_back(w: Array, now: int, psi: Array, grid: BeamGrid, growth: float) -> None:
+    """Let the beam keep its place while its kink grows by so much (rad)."""
+    for i in range(1, grid.mid):
+        w[now, i + 1] += 0.5 * growth * i * grid.dx
+        psi[i] += 0.5 * growth
+    mirror(w, 1 - now, grid)
+    mirror_halfway(psi, grid.mid)
+
+
+@compiled
+def straighten(w: Array, grid: BeamGrid, kink: float) -> None:
+    """Make of the deflection beyond the kink that of the beam."""
+    for i in range(1, grid.mid + 1):
+        for row in range(2):
+            w[row, i] -= 0.5 * kink * (i - 1) * grid.dx
