@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.beam import BeamGrid, mirror, mirror_halfway
+from impactlab.solver.beam import BeamGrid, BeamState, mirror, mirror_halfway
 from impactlab.solver.contact.history import Pair, yield_stress
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.jit import compiled
@@ -57,12 +57,12 @@ def height(grid: BeamGrid, kink: float) -> float:
 
 
 @compiled
-def bend_back(w: Array, now: int, psi: Array, grid: BeamGrid, growth: float) -> None:
+def bend_back(beam: BeamState, now: int, psi: Array, grid: BeamGrid, growth: float) -> None:
     """Let the beam keep its place while its kink grows by so much (rad)."""
     for i in range(1, grid.mid):
-        w[now, i + 1] += 0.5 * growth * i * grid.dx
+        beam.w[now, i + 1] += 0.5 * growth * i * grid.dx
         psi[i] += 0.5 * growth
-    mirror(w, 1 - now, grid)
+    mirror(beam.w, 1 - now, beam.u, grid)
     mirror_halfway(psi, grid.mid)
 
 

@@ -207,7 +207,7 @@ def _bend_back(state: State, now: int, contact: Record, growth: float) -> None:
     if growth == 0.0:
         return
     before, _ = _moments(state, now)
-    bend_back(state.beam.w, now, state.extra.shear.psi, state.grid, growth)
+    bend_back(state.beam, now, state.extra.shear.psi, state.grid, growth)
     after, _ = _moments(state, now)
     contact.kink += growth
     contact.kink_work += 0.5 * (before + after) * growth

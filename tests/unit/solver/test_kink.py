@@ -9,13 +9,13 @@ import impactlab as il
 from impactlab.model.case_table import case_table
 from impactlab.simulate import run_dataset
 from impactlab.solver import kink
-from impactlab.solver.beam import BeamGrid
+from impactlab.solver.beam import make_beam, make_grid
 from impactlab.solver.contact.history import CONTACT, load, make_pair
 
 PAPER = il.corrected_impact(5.0)
 
 
-def beam(depth, radius):
+def other(depth, radius):
     sphere = replace(PAPER.sphere, radius=radius)
     return replace(PAPER, beam=replace(PAPER.beam, depth=depth), sphere=sphere)
 
@@ -26,8 +26,8 @@ def beam(depth, radius):
         (replace(PAPER, velocity=0.99), 1.110e-5),
         (replace(PAPER, velocity=2.0), 3.600e-5),
         (PAPER, 1.141e-4),
-        (beam(40e-3, 20e-3), 2.798e-5),
-        (beam(15e-3, 20e-3), 9.609e-5),
+        (other(40e-3, 20e-3), 2.798e-5),
+        (other(15e-3, 20e-3), 9.609e-5),
     ],
 )
 def test_angle_is_that_of_three_dimensions(impact, angle):
@@ -45,13 +45,13 @@ def test_angle_is_that_of_three_dimensions(impact, angle):
 
 
 def test_a_kinked_beam_at_rest_is_two_straight_halves():
-    grid = BeamGrid(11, 0.1, *np.ones(6))
-    w, psi = np.zeros((2, 14)), np.zeros(14)
-    kink.bend_back(w, 0, psi, grid, 0.02)
-    assert w[0, grid.mid] == kink.height(grid, 0.02) == pytest.approx(0.02 * 2.0 / 4.0)
+    grid = make_grid(21, 0.1, 1e-6, 1.0, 1.0)
+    beam, psi = make_beam(grid), np.zeros(14)
+    kink.bend_back(beam, 0, psi, grid, 0.02)
+    assert beam.w[0, grid.mid] == kink.height(grid, 0.02) == pytest.approx(0.02 * 2.0 / 4.0)
     assert psi[grid.mid] - psi[grid.mid - 1] == -0.02
-    kink.straighten(w, grid, 0.02)
-    np.testing.assert_allclose(w[0, 1 : grid.mid + 1], 0.0, atol=1e-15)
+    kink.straighten(beam.w, grid, 0.02)
+    np.testing.assert_allclose(beam.w[0, 1 : grid.mid + 1], 0.0, atol=1e-15)
 
 
 def test_the_work_of_a_kink_is_in_the_balance_of_energy():
