@@ -288,11 +288,8 @@ def _beam(ax: Axes, run: xr.Dataset) -> Part:
     scales.linear(ax, "y", ticks=4)
     (line,) = ax.plot(x, shapes[0], color=style.COLOURS[0], linewidth=2.0, solid_capstyle="butt")
     share = run["strike_position"].item() if "strike_position" in run else 0.5
-    for end, side in zip((0, -1), ("left", "right"), strict=True):
-        support = run[f"support_{side}"].item() if f"support_{side}" in run else "pinned"
-        if support != "free":
-            marker = "^" if support == "pinned" else "s"
-            ax.plot(x[end], 0.0, marker, color=style.MUTED, markersize=6, clip_on=False)
+    ends = [np.asarray(run.get(f"support_{end}", "pinned")).item() for end in ("left", "right")]
+    _supports(ax, x, ends, "pinned", "^")
     above = ScaledTranslation(0.0, (_BALL + 1.5) / 72, ax.figure.dpi_scale_trans)
     (ball,) = ax.plot(
         [x[0] + share * (x[-1] - x[0])],
@@ -302,12 +299,21 @@ def _beam(ax: Axes, run: xr.Dataset) -> Part:
         color=style.COLOURS[1],
         transform=ax.transData + above,
     )
+    _supports(ax, x, ends, "clamped", "s")
 
     def move(frame: int) -> None:
         line.set_ydata(shapes[frame])
         ball.set_ydata(sphere[frame : frame + 1])
 
     return [line, ball], move
+
+
+def _supports(ax: Axes, x: Floats, ends: list[str], kind: str, marker: str) -> None:
+    """Mark the ends of one kind; x: from the left one to the right one."""
+    places = [place for place, end in zip(x[[0, -1]], ends, strict=True) if end == kind]
+    if places:
+        look = {"color": style.MUTED, "markersize": 6, "clip_on": False}
+        ax.plot(places, np.zeros(len(places)), marker, **look)
 
 
 def _zone(ax: Axes, run: xr.Dataset) -> Part:
