@@ -88,7 +88,7 @@ CHOSEN: dict[str, tuple[float, dict[str, dict[str, float]]]] = {
 """Velocity (m/s) and what differs from the paper's beam and sphere, in SI units."""
 MESHES = 6.0, 6.5
 """Elements over the radius of the contact."""
-DESIGNED = 14
+DESIGNED = 28
 """Cases of the Sobol design."""
 SEED = 35
 KIND = {"outside_contact_law": "status"} | {
@@ -119,7 +119,7 @@ def designed() -> Iterator[tuple[str, il.Impact]]:
     Young's moduli have the geometric mean of steel's, sections the area of 30 by 30 mm. Beams
     deeper than wide have no strip.
     """
-    for number, u in enumerate(qmc.Sobol(8, seed=SEED).random(16)[:DESIGNED]):
+    for number, u in enumerate(qmc.Sobol(8, seed=SEED).random(32)[:DESIGNED]):
         ratio, hardness, section = _log(u[0], 1 / 3, 10), _log(u[1], 1, 20), _log(u[2], 0.2, 4)
         nu, yield_ratio, velocity = 0.05 + 0.4 * u[3], _log(u[4], 60, 1500), _log(u[5], 0.5, 20)
         hardening, radius = 0.05 * u[6] ** 2, _log(u[7], 10e-3, 35e-3)
