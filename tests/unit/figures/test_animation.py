@@ -41,7 +41,7 @@ def drawn(moving):
 def test_frames_show_the_fields_of_the_run(run, moving, drawn):
     assert len(drawn) == 1 + moving.frames == 13
     beam, zone, contact, _ = moving._figure.axes
-    (line, _, ball), (guide, marker) = beam.lines, contact.lines[1:]
+    (line, *_, ball), (guide, marker) = beam.lines, contact.lines[1:]
     (mesh,) = zone.collections
     for frame in (0, 5, 11):
         moving._update(frame)
