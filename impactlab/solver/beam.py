@@ -281,9 +281,9 @@ def add_moment(plastic: Array, M_0: Array, i: Index, change: Any, grid: BeamGrid
     share = grid.factor * change
     M_0[i] += change
     # mid-span has such a neighbour on both sides, a free end half the mass; others never read it
-    plastic[i - ONE] += 2.0 * share if is_end(grid, i - ONE) else share
+    plastic[i - ONE] += 2.0 * share if i - ONE < np.uint64(grid.first) else share
     plastic[i] -= 2.0 * share
-    plastic[i + ONE] += 2.0 * share if is_end(grid, i + ONE) else share
+    plastic[i + ONE] += 2.0 * share if i + ONE >= np.uint64(grid.stop) else share
 
 
 # The energy at a full step, once u has been moved on.

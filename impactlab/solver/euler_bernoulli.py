@@ -65,7 +65,8 @@ def _step(state: State, now: int, F: float) -> None:
         front[3] = max(front[3], min(grid.mid + away, grid.last))
     strike(w, now, u, F, grid)
     front[0] = reach(w, 1 - now, front[0])
-    front[2] = reach_right(w, 1 - now, front[2], grid.last)
+    if front[2] < grid.last:
+        front[2] = reach_right(w, 1 - now, front[2], grid.last)
 
 
 @compiled

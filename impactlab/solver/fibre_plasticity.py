@@ -168,11 +168,12 @@ def begin_tangents(
     Adds what that changes to u and, unless it is empty, to w: a step is mended that has been made
     before. Returns how far from the struck node the last section looked at lies, in spacings.
     """
-    away, mid, last = -1, grid.mid, grid.last
+    away, mid, last, sides = -1, grid.mid, grid.last, 1
     while outside > 0.0 and away < max(mid - 2, last - mid):
         away += 1  # from the struck node, near which they most often are
-        for place in (mid - away, mid + away):
-            if place < 2 or place > last or (outside == 0.0 and away == 0):
+        for side in range(sides):
+            place = mid + away if side else mid - away
+            if place < 2 or place > last:
                 continue
             i = np.uint64(place)
             kappa = curvature(beam.w, now, psi, grid, i)
@@ -186,6 +187,7 @@ def begin_tangents(
                     u[j] += change
                     if w.size > 0:
                         w[j] += change
+        sides = 2 if last > mid else 1
     return away
 
 
