@@ -86,7 +86,7 @@ def rigid_shapes(left, right, x):
 
 
 def discrete_frequencies(left, right, nodes, struck):
-    """Of the grid's beam over sqrt(EI/(rho A L^4)), ascending, from its steps alone."""
+    """Return frequencies of the grid's beam over sqrt(EI/(rho A L^4)), ascending, from its steps alone."""
     grid = make_grid(
         nodes, 1 / (nodes - 1), 1e-6, 1.0, 1.0, SUPPORTS.index(left), SUPPORTS.index(right), struck
     )
@@ -119,7 +119,7 @@ def test_frequencies_converge_at_second_order_to_the_closed_form(left, right):
 
 
 def modal_errors(left, right, place, nodes):
-    """Of history and last shape, over the largest deflection, under the run's own force.
+    """Return errors of history and last shape, over the largest deflection, under the same force.
 
     Every closed-form mode is integrated exactly under that force.
     """
