@@ -4,8 +4,8 @@ python tests/benchmarks/strain_rate.py
 
 Writes docs/agreement_rates.csv: the change by each law of the strain rate, in % of the answer
 without, on the paper's beam and sphere over the first contact. With and without are solved on the
-same mesh, so that its error cancels; what is left is the waviness of the force, a percent on these
-meshes (agreement.py). The 3-D runs, half an hour on a core, are kept in results/strain_rate: a
+same mesh, so that its error cancels; the waviness of the force remains, one percent on these
+meshes (agreement.py). The 3-D runs, half an hour on a core, are kept in results/strain_rate; a
 second call only solves the beams.
 """
 

@@ -86,7 +86,7 @@ def rigid_shapes(left, right, x):
 
 
 def discrete_frequencies(left, right, nodes, struck):
-    """Return frequencies of the grid's beam over sqrt(EI/(rho A L^4)), ascending, from its steps alone."""
+    """Return the grid's frequencies over sqrt(EI/(rho A L^4)), ascending, from its steps alone."""
     grid = make_grid(
         nodes, 1 / (nodes - 1), 1e-6, 1.0, 1.0, SUPPORTS.index(left), SUPPORTS.index(right), struck
     )
