@@ -312,8 +312,8 @@ def _supports(ax: Axes, x: Floats, ends: list[str], kind: str, marker: str) -> N
     """Mark the ends of one kind; x: from the left one to the right one."""
     places = [place for place, end in zip(x[[0, -1]], ends, strict=True) if end == kind]
     if places:
-        look = {"color": style.MUTED, "markersize": 6, "clip_on": False}
-        ax.plot(places, np.zeros(len(places)), marker, **look)
+        height = np.zeros(len(places))
+        ax.plot(places, height, marker, color=style.MUTED, markersize=6, clip_on=False)
 
 
 def _zone(ax: Axes, run: xr.Dataset) -> Part:
