@@ -3,9 +3,11 @@
 Heavy imports wait until a command needs them.
 """
 
+import errno
 import gc
 import signal
 import sys
+from pathlib import Path
 
 from impactlab.cli.interrupt import stop_at_once
 
@@ -24,8 +26,20 @@ def main() -> None:
         from impactlab.validation.errors import printable
 
         logger = logging.getLogger("impactlab")
-        logger.error("%s", "\n".join(map(printable, str(error).split("\n"))))
+        logger.error("%s", "\n".join(map(printable, _message(error).split("\n"))))
         logger.debug("it came from here", exc_info=True)
         sys.exit(1)
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process is about to end by itself
+
+
+def _message(error: Exception) -> str:
+    """Return the text of an error, with a remedy where a file or folder is not accessible."""
+    refusals = (errno.EACCES, errno.EPERM, errno.EROFS)
+    if not isinstance(error, OSError) or error.errno not in refusals or not error.filename:
+        return str(error)
+    return (
+        f"{Path(error.filename).absolute()}: {error.strerror}: results are written "
+        "where the command runs, so run it in a folder that you may write to (a copy of studies/ "
+        "is enough), or change the permissions of this one"
+    )

@@ -94,11 +94,11 @@ def configure(
     stop_quietly()
     logger = logging.getLogger("impactlab")
     logger.setLevel(logging.DEBUG if debug else logging.INFO)
-    handlers: list[logging.Handler] = [logging.StreamHandler()]
+    form = logging.Formatter("%(levelname)s: %(message)s")
+    logger.handlers[:] = [logging.StreamHandler()]
+    logger.handlers[0].setFormatter(form)
     if log:
         log.parent.mkdir(parents=True, exist_ok=True)
-        handlers.append(logging.FileHandler(log, mode="w"))
-    logger.handlers[:] = handlers
-    for handler in handlers:
-        handler.setFormatter(logging.Formatter("%(levelname)s: %(message)s"))
+        logger.addHandler(logging.FileHandler(log, mode="w"))
+        logger.handlers[1].setFormatter(form)
     warnings.showwarning = lambda message, *_, **__: logger.warning("%s", message)

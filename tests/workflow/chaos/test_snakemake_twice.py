@@ -1,0 +1,93 @@
+"""Snakemake killed, or started twice in one folder: one clear line, the same bits in the end."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from chaos import PATIENCE, assert_same_bits, keys_on_disk, solved_before, stored
+
+pytestmark = pytest.mark.chaos
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture
+def project(folder):
+    """The study with the workflow."""
+    shutil.copytree(ROOT / "workflow", folder / "workflow")
+    for name in ("Snakefile", "environment.yaml"):
+        shutil.copy(ROOT / name, folder)
+    return folder
+
+
+class Snakemake:
+    """Snakemake on the runs of the study, and what it prints."""
+
+    def __init__(self, folder, name, *args):
+        self.output = folder / name
+        path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+        command = [sys.executable, "-m", "snakemake", "--cores", "1", "--rerun-incomplete"]
+        with self.output.open("w") as output:
+            self.process = subprocess.Popen(
+                [*command, *args, "results/tough/runs.nc"],
+                cwd=folder,
+                env=os.environ | {"PATH": path},
+                stdout=output,
+                stderr=output,
+                start_new_session=True,
+            )
+
+    def wait_until_it_solves(self):
+        deadline = time.monotonic() + PATIENCE
+        while "solved before" not in self.printed:
+            assert self.process.poll() is None, self.printed
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+
+    def send(self, how):
+        """Send a signal to it and its job."""
+        os.killpg(self.process.pid, how)
+
+    def end(self):
+        return self.process.wait(timeout=PATIENCE)
+
+    @property
+    def printed(self):
+        return self.output.read_text()
+
+
+def test_two_in_one_folder(project, undisturbed):
+    """The second one says so, and the first goes on."""
+    first = Snakemake(project, "first.txt")
+    first.wait_until_it_solves()
+    first.send(signal.SIGSTOP)
+    second = Snakemake(project, "second.txt")
+    assert second.end() == 1
+    assert "cannot be locked" in second.printed
+    assert "Traceback" not in second.printed
+    first.send(signal.SIGCONT)
+    assert first.end() == 0, first.printed
+    assert_same_bits(stored(project), undisturbed)
+
+
+def test_killed_with_its_job(project, undisturbed):
+    """The same command names the remedy of Snakemake's lock, and then goes on."""
+    first = Snakemake(project, "first.txt")
+    first.wait_until_it_solves()
+    first.send(signal.SIGKILL)
+    first.end()
+    before = len(keys_on_disk(project))
+    locked = Snakemake(project, "locked.txt")
+    assert locked.end() == 1
+    assert "--unlock" in locked.printed
+    assert "Traceback" not in locked.printed
+    assert Snakemake(project, "unlocked.txt", "--unlock").end() == 0
+    last = Snakemake(project, "last.txt")
+    assert last.end() == 0, last.printed
+    assert solved_before(last.printed) == before
+    assert_same_bits(stored(project), undisturbed)

@@ -1,0 +1,36 @@
+"""A folder that cannot be written to: one clear line, before anything is solved."""
+
+import os
+import subprocess
+
+import pytest
+from chaos import complaint, run
+
+pytestmark = pytest.mark.chaos
+
+
+@pytest.fixture
+def results(folder):
+    """The folder of results, which nobody can write to, not even root."""
+    results = folder / "results"
+    results.mkdir()
+    if os.geteuid() != 0:
+        results.chmod(0o555)
+        yield results
+        results.chmod(0o755)
+        return
+    mount = ["mount", "-t", "tmpfs", "-o", "ro", "tmpfs", str(results)]
+    if subprocess.run(mount, capture_output=True).returncode != 0:
+        pytest.skip("root can write everywhere where mounting is not allowed")
+    yield results
+    subprocess.run(["umount", "--lazy", str(results)], check=True)
+
+
+def test_results_that_cannot_be_written(folder, results):
+    """It ends before it solves, and names the folder and the remedy."""
+    command = run(folder)
+    assert command.end() == 1, command.said
+    line = complaint(command.said)
+    assert str(results / "tough") in line
+    assert "run it in a folder that you may write to" in line
+    assert "solved before" not in command.said
