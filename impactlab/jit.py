@@ -29,6 +29,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
@@ -242,23 +243,28 @@ class Compiler:
         self,
         *,
         fastmath: Any = False,
-        kept: bool = True,
         inline: bool = False,
         allocates: bool = False,
         from_python: bool = False,
     ) -> Callable[[Function], Function]:
         """Return a decorator that compiles functions; under NUMBA_DISABLE_JIT=1 it changes nothing.
 
-        fastmath: what may be done to sums and products, as in LLVM. kept: whether in the cache.
-        inline: always part of the callers, whose loops can then be vectorised. allocates: whether
-        the functions may make or own arrays: then they have numba's counting of references
-        (`_nrt`), which costs time at each call; others that make an array do not compile.
+        fastmath: what may be done to sums and products, as in LLVM. inline: always part of the
+        callers, whose loops can then be vectorised. allocates: whether the functions may make or
+        own arrays: then they have numba's counting of references (`_nrt`), which costs time at
+        each call; others that make an array do not compile.
         from_python: the functions are called from Python, too, so that they are kept with every
         kernel that calls them.
         """
         jit: Any = numba.njit  # its types do not list `_nrt`
 
         def compiled(function: Function) -> Function:
+            # Functions made by one function share its name. The cache would take them for each
+            # other, and so would the linker, which joins symbols of one name across kernels.
+            is_made = "<locals>" in function.__qualname__
+            if is_made:
+                _MADE[function.__qualname__] += 1
+                function.__qualname__ += f"_{_MADE[function.__qualname__]}"
             name = f"{function.__module__}.{function.__qualname__}"
             # In a process that compiles kernels, Python can call these alone, which alone are
             # kept: what makes the others ready for Python would take half of the time.
@@ -277,13 +283,15 @@ class Compiler:
                 forceinline=inline,
                 **({} if _IS_PLAIN else private),
             )(function)
-            if kept and called and self.folder is not None and hasattr(dispatcher, "_cache"):
+            if called and not is_made and self.folder is not None and hasattr(dispatcher, "_cache"):
                 dispatcher._cache = KernelCache(self.folder, name)
             return cast(Function, dispatcher)
 
         return compiled
 
 
+_MADE: Counter[str] = Counter()
+"""How many functions another function has made, by their qualified name."""
 _CALLED: set[str] = set()
 """Functions that Python can call in this process, by qualified name."""
 

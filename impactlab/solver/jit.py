@@ -26,5 +26,3 @@ sums in another order, than a kernel from the cache."""
 fused = _COMPILER.decorator(fastmath=True, inline=True)
 inlined = _COMPILER.decorator(inline=True)
 """Part of its callers: a State handed on at every step takes longer than the step."""
-linked = _COMPILER.decorator(kept=False)
-"""For functions made within another, which are kept in their callers' code alone."""

@@ -25,7 +25,7 @@ import numpy as np
 from impactlab.solver.contact import LAWS, finite_element
 from impactlab.solver.contact.metals import LIKE_METALS, shape
 from impactlab.solver.contact.switch import curve
-from impactlab.solver.jit import compiled, inlined, linked
+from impactlab.solver.jit import compiled, inlined
 from impactlab.solver.strain_rate import RateLaw, rate_law
 from impactlab.solver.types import Record, Shape, Unloading, record
 
@@ -157,11 +157,10 @@ def _stand(contact: Record, pair: Pair, low: float, high: float, share: float) -
     contact.K = start_below / (low - contact.delta_r) ** contact.n
 
 
-def bracketed(name: str, bears: Callable[[Record, Pair], tuple[float, float]]) -> Any:
+def bracketed(bears: Callable[[Record, Pair], tuple[float, float]]) -> Any:
     """Return the search, by brackets, for where loading bears an approach.
 
-    name: of the function. bears(contact, pair): force (N) and approach (m) at the furthest point of
-    loading.
+    bears(contact, pair): force (N) and approach (m) at the furthest point of loading.
     """
 
     def load_between(contact: Record, pair: Pair, lowest: float, approach: float) -> float:
@@ -199,9 +198,7 @@ def bracketed(name: str, bears: Callable[[Record, Pair], tuple[float, float]]) -
             share += width if borne < approach else -width
         return F
 
-    # numba knows functions by their names
-    load_between.__qualname__ = load_between.__name__ = name
-    return linked(load_between)
+    return compiled(load_between)
 
 
 @compiled
@@ -209,7 +206,7 @@ def _bears(contact: Record, pair: Pair) -> tuple[float, float]:
     return contact.F_m, contact.delta_m + pair.compliance * contact.F_m
 
 
-_load_between = bracketed("load_between", _bears)
+_load_between = bracketed(_bears)
 
 
 @compiled

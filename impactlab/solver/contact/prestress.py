@@ -75,7 +75,7 @@ def complementary(F: float, K: float, delta_r: float, n: float) -> float:
     return float(F * (delta_r + (F / K) ** (1.0 / n) * n / (n + 1.0)))
 
 
-_load_between = bracketed("load_prestressed_between", _yields)
+_load_between = bracketed(_yields)
 
 
 @compiled

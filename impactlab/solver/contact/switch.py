@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from impactlab.solver.contact import LAWS
-from impactlab.solver.jit import compiled, linked
+from impactlab.solver.jit import compiled
 from impactlab.solver.types import Unloading
 
 
@@ -56,9 +56,7 @@ def _link(attribute: str, number: int, fallback: Any) -> Any:
             return chosen(*of)
         return fallback(law, *of)
 
-    # numba knows functions by their names and would take one made here for another
-    ask.__qualname__ = ask.__name__ = f"{attribute}_{number}"
-    return linked(ask)
+    return compiled(ask)
 
 
 curve, limit, radius, damping = _no_curve, _no_limit, _no_radius, _no_damping

@@ -24,6 +24,21 @@ from few_kernels.jit import compiled
 def triple(x):
     return 3.0 * x
 """
+TIMES = """
+from few_kernels.jit import compiled
+
+def times(factor):
+    @compiled
+    def multiplied(x):
+        return factor * x
+    return multiplied
+
+double, six_times = times(2.0), times(6.0)
+
+@compiled
+def triple(x):
+    return double(0.5 * x) + six_times(x)
+"""
 CALL = """
 from few_kernels.triple import triple
 print(triple(2.0), len(triple.stats.cache_hits))
@@ -91,6 +106,13 @@ def test_another_processor_compiles_its_own(call):
     assert printed(call())[0] == ["6.0", "0"]
     assert printed(call(NUMBA_CPU_NAME="generic", NUMBA_CPU_FEATURES=""))[0] == ["6.0", "0"]
     assert printed(call())[0] == ["6.0", "1"]
+
+
+def test_functions_made_by_one_function_are_not_confused(call, tmp_path):
+    """Each answers for itself, compiled and from the cache; they are kept with their callers."""
+    (tmp_path / "here" / "few_kernels" / "triple.py").write_text(TIMES)
+    for hits in "0", "1":
+        assert printed(call())[0] == ["14.0", hits]
 
 
 def test_without_a_folder_kernels_run_and_leave_nothing_behind(call, tmp_path):
