@@ -15,6 +15,8 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.simulate import compile_kernels, profile_coordinates, solve
+from impactlab.solver.contact import LAWS
+from impactlab.solver.contact.switch import DAMPED
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.shard import Array
 from impactlab.study.solvers import Solver, flattened, run_number, run_shape
@@ -91,7 +93,9 @@ def prepare(design: xr.Dataset) -> None:
     sensitivity = np.atleast_1d(design.get("beam_rate_sensitivity", metal.rate_sensitivity))
     strip = np.atleast_1d(design.get("contact_compliance", impact.contact_compliance)) == "strip"
     stress = np.atleast_1d(design.get("contact_prestress", impact.contact_prestress)) == "bending"
-    options = np.meshgrid(patch, rate > 0.0, sensitivity > 0.0, strip, stress)
+    laws = np.atleast_1d(design.get("contact", impact.contact))
+    damped = np.isin(laws, [LAWS[number] for number in DAMPED])
+    options = np.meshgrid(patch, rate > 0.0, sensitivity > 0.0, strip, stress, damped)
     compile_kernels(models, schemes, np.unique(np.logical_or.reduce(options)).tolist())
 
 

@@ -1,0 +1,27 @@
+"""The kernels that a study compiles before its runs are those that the runs need."""
+
+import numpy as np
+import pytest
+
+from impactlab.solver.contact import LAWS
+from impactlab.solver.kernels import is_extended
+from impactlab.study.solvers import kernels
+
+OPTIONS = [
+    *({"contact": law} for law in LAWS),
+    {"load": "contact_patch"},
+    {"beam_rate_coefficient": 3200.0},
+    {"beam_rate_sensitivity": 0.01},
+    {"contact_compliance": "strip"},
+    {"contact_prestress": "bending"},
+]
+
+
+@pytest.mark.parametrize("option", OPTIONS, ids=lambda option: "{}".format(*option.values()))
+def test_a_study_compiles_the_kernels_of_its_runs(option, small_design, monkeypatch):
+    design = small_design(1.0).assign_coords({"beam_model": "timoshenko"} | option)
+    compiled = []
+    monkeypatch.setattr(kernels, "compile_kernels", lambda *kinds: compiled.append(kinds))
+    kernels.prepare(design)
+    needed = is_extended(kernels.cases(design, np.array([0, 1]))).tolist()
+    assert compiled == [(["timoshenko"], ["leapfrog"], sorted(set(needed)))]
