@@ -1,10 +1,14 @@
-"""The kernels that a study compiles before its runs are those that the runs need."""
+"""What is compiled before a study's runs is what they need."""
+
+import itertools
 
 import numpy as np
 import pytest
 
+from impactlab.simulate import compile_kernels
+from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.solver.contact import LAWS
-from impactlab.solver.kernels import is_extended
+from impactlab.solver.kernels import is_extended, kernel_of
 from impactlab.study.solvers import kernels
 
 OPTIONS = [
@@ -25,3 +29,11 @@ def test_a_study_compiles_the_kernels_of_its_runs(option, small_design, monkeypa
     kernels.prepare(design)
     needed = is_extended(kernels.cases(design, np.array([0, 1]))).tolist()
     assert compiled == [(["timoshenko"], ["leapfrog"], sorted(set(needed)))]
+
+
+def test_compiling_all_leaves_no_kernel_out(monkeypatch):
+    programs = {}
+    monkeypatch.setitem(compile_kernels.__globals__, "precompile", programs.update)
+    compile_kernels()
+    kinds = itertools.product(range(len(BEAM_MODELS)), range(len(SCHEMES)), (False, True))
+    assert set(programs) == {kernel_of(*kind) for kind in kinds}
