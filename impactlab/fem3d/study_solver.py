@@ -106,7 +106,7 @@ def _impact_of(case: Any) -> Impact:
 
 
 def work(cases: Array) -> Array:
-    """Return the estimated time of each run in node-steps; 0 for a run that is listed again."""
+    """Return the estimated time of each run in node-steps; 0 for repetitions of a run."""
     estimates = _priced(cases, cost.work, lambda run: cost.A_SECOND * run.cpu_seconds)
     _, first = np.unique(cases.view(f"V{cases.dtype.itemsize}"), return_index=True)
     once = np.zeros(cases.size)
