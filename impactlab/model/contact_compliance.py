@@ -40,7 +40,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from impactlab.model.impact import Impact
+from impactlab.model.impact import OTHER_BEAM, Impact, is_plain
 from impactlab.types import Floats
 
 DEPTHS = (0.2, 0.3, 0.45, 0.7, 1.0, 1.5, 2.5, 4.0)
@@ -205,8 +205,8 @@ def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
 
     A strip's do not include its bending across the width.
 
-    Raises ValueError where `beam_model` is not "timoshenko", the beam is outside the table, or a
-    strip is deeper than wide.
+    Raises ValueError where `beam_model` is not "timoshenko", the beam is outside the table, struck
+    near an end, or a strip deeper than wide or with a free end.
     """
     applies = np.not_equal(impact.contact_compliance, "half_space")
     beam, sphere = impact.beam, impact.sphere
@@ -215,6 +215,9 @@ def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
     _within_table(impact, applies, refused)
     if np.any(strip & (beam.depth > beam.width)):
         raise ValueError(f"{refused}needs a beam as wide as deep at least: set 'beam'")
+    free = np.equal(beam.support_left, "free") | np.equal(beam.support_right, "free")
+    if np.any(strip & free):
+        raise ValueError(f"{refused}needs ends that are pinned or clamped: set 'beam'")
     c, gamma = _of_beam(impact, FORCE, MOMENT)
     ball = _at_ratio(np.asarray(sphere.material.poissons_ratio), np.asarray(SPHERE))
     c = c + ball / (sphere.material.youngs_modulus * sphere.radius)
@@ -243,10 +246,13 @@ def contact_stress(impact: Impact) -> tuple[Floats, Floats]:
     Beyond those of the half-space, of the moment and of a strip's own bending, of one impact or of
     many; zero where `contact_prestress` is ignored.
 
-    Raises ValueError where `beam_model` is not "timoshenko", or the beam is outside the table.
+    Raises ValueError where `beam_model` is not "timoshenko", or the beam is outside the table or no
+    pinned one that is struck at mid-span.
     """
     applies = np.not_equal(impact.contact_prestress, "ignored")
     _within_table(impact, applies, "Impact.contact_prestress = 'bending': ")
+    if np.any(applies & ~is_plain(impact)):
+        raise ValueError(f"Impact.contact_prestress = 'bending': must be ignored {OTHER_BEAM}")
     square = impact.beam.depth * impact.beam.depth
     along, across = (_from_table(impact, table) for table in (STRESS_ALONG, STRESS_ACROSS))
     strip = _strip(impact)
@@ -267,6 +273,14 @@ def _within_table(impact: Impact, applies: np.ndarray[Any, Any], refused: str) -
         )
     if np.any(applies & (beam.span < LEAST_SPAN * np.maximum(beam.depth, beam.width))):
         raise ValueError(f"{refused}needs a span of {LEAST_SPAN:g} depths and widths at least")
+    place = np.asarray(impact.strike_position)
+    room = np.minimum(place, 1.0 - place) * beam.span
+    if np.any(applies & (room < 0.5 * LEAST_SPAN * np.maximum(beam.depth, beam.width))):
+        raise ValueError(
+            f"{refused}needs a strike {0.5 * LEAST_SPAN:g} depths and widths from the ends at "
+            "least: change strike_position, or set it to "
+            f"{TIMOSHENKO_OPTIONS[refused.split(' = ')[0].split('.')[1]]}"
+        )
 
 
 def _from_table(impact: Impact, table: Floats) -> Floats:

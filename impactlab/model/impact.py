@@ -17,7 +17,7 @@ from impactlab.model.checks import instance, number, one_of, positive, require
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI, Quantity, engineering
 from impactlab.model.section import SHAPES, Rectangle
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, COMPLIANCES, LOADS, PRESTRESSES, SUPPORTS
+from impactlab.solver import BEAM_MODELS, COMPLIANCES, LOADS, PRESTRESSES, SUPPORTS, WAVE_MODELS
 from impactlab.solver.contact import LAWS
 
 MODELS = (*BEAM_MODELS, *wings.models())
@@ -102,7 +102,8 @@ class Beam:
     support_left, support_right : {"pinned", "clamped", "free"}, default "pinned"
         What holds each end: "pinned" (deflection and moment are zero; a roller is the same, without
         an axial force), "clamped" (deflection and slope are zero), or "free" (moment and shear
-        force are zero). Others than pinned need the beam models "euler_bernoulli" or "elastic".
+        force are zero). Others than pinned need the beam models "euler_bernoulli", "elastic" or
+        "timoshenko" and the scheme "leapfrog".
 
     Raises
     ------
@@ -210,7 +211,7 @@ class Impact:
     strike_position : Quantity, default 0.5
         Place that the sphere strikes, as a share of the span from the left end; it must lie on a
         node of the discretisation, and on an end only where that is free. Others than mid-span need
-        the beam models "euler_bernoulli" or "elastic".
+        what other ends need.
 
     Raises
     ------
@@ -256,9 +257,9 @@ class Impact:
         on_beam = np.greater(place, 0.0) & np.less(place, 1.0) | on_end
         message = "must be a share of the span above 0 and below 1, or the place of a free end"
         require(on_beam, "Impact", "strike_position", place, message)
-        bends = np.isin(self.beam_model, BENDING_MODELS)
-        message = f"must be {' or '.join(BENDING_MODELS)} {OTHER_BEAM}"
-        require(bends | is_plain(self), "Impact", "beam_model", self.beam_model, message)
+        moves = np.isin(self.beam_model, WAVE_MODELS)
+        message = f"must be {' or '.join(WAVE_MODELS)} {OTHER_BEAM}"
+        require(moves | is_plain(self), "Impact", "beam_model", self.beam_model, message)
 
     def _repr_html_(self) -> str:
         """Return a table of all parameters for notebooks, with units."""

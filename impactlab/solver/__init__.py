@@ -21,3 +21,5 @@ PRESTRESSES = ("ignored", "bending")
 """What stress the metal is under where the contact yields (contact/prestress.py)."""
 BENDING_MODELS = BEAM_MODELS[:2]
 """Those that have every scheme in time; the others have leapfrog alone."""
+WAVE_MODELS = BEAM_MODELS[:3]
+"""Those of which every node moves, with any ends, struck anywhere."""

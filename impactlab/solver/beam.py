@@ -10,8 +10,8 @@ make the energies below sums over the nodes, of which an end has half its share.
 A beam of equal ends that is struck in its middle is solved from the left end to mid-span: another
 kind of end, symmetric, where w is even. That a half is solved is known here alone: to make_grid, to
 `copies` of the grid and copies(), the factors of works and energies, and to half_node(), which
-finds the nodes of a profile of the whole beam. Timoshenko's beam, the modal scheme and lumped
-beams know pinned halves alone (model/case_table.py refuses others).
+finds the nodes of a profile of the whole beam. The modal scheme and lumped beams know pinned
+halves alone (model/case_table.py refuses others).
 
 With M = M_0 - EI kappa (section.py), M_xx is the fourth difference of w and the second one of
 M_0. M_0 changes only where sections yield, so a step is one loop over w, and the share of M_0 in
@@ -47,8 +47,8 @@ class BeamGrid(NamedTuple):
     """mid: index of the struck node; dx (m); dt (s); mu = rho A (kg/m).
 
     per_dx2 = 1/dx^2. Shares in w of one step: factor = dt^2/(mu dx^2) of a second difference of
-    moments, stiffness = factor EI/dx^2 of a fourth difference of w, push = dt^2/(mu dx) of the
-    contact force (twice that on a free end). last: index of the last node moved; first, stop: those
+    moments, stiffness = factor EI/dx^2 of a fourth difference of w, push = dt^2/(mu dx) of a
+    force. last: index of the last node moved; first, stop: those
     from first to before stop are no ends. left, right: kinds of the ends. copies: number of nodes
     of the whole beam that such a node stands for.
     """
@@ -106,9 +106,7 @@ def make_grid(
     right = SYMMETRIC if halved else right
     end = start + (middle if halved else nodes - 1)
     last = end - 1 if right == PINNED else end
-    factor, push = dt**2 / (mu * dx**2), dt**2 / (mu * dx)
-    if struck == 0 or struck == nodes - 1:
-        push *= 2.0
+    factor = dt**2 / (mu * dx**2)
     return BeamGrid(
         start + struck,
         dx,
@@ -117,7 +115,7 @@ def make_grid(
         1.0 / dx**2,
         factor,
         factor * EI / dx**2,
-        push,
+        dt**2 / (mu * dx),
         last,
         start + 1,
         end,
@@ -225,8 +223,11 @@ def move(
 @compiled
 def strike(w: Array, now: int, u: Array, F: float, grid: BeamGrid) -> None:
     """Add the contact force F (N) to a step already made, and mirror the nodes beyond the ends."""
-    u[grid.mid] += grid.push * F
-    w[1 - now, grid.mid] += grid.push * F
+    change = grid.push * F
+    if copies(grid, grid.mid) < 1.0:  # a free end
+        change *= 2.0
+    u[grid.mid] += change
+    w[1 - now, grid.mid] += change
     mirror(w, now, u, grid)
 
 
@@ -264,15 +265,35 @@ def _set_end(w: Array, u: Array, end: int, inward: int, kind: int) -> None:
 
 
 @inlined
-def mirror_even(field: Array, mid: int) -> None:
-    """Set the node beyond mid-span of a field that is even there."""
-    field[mid + 1] = field[mid - 1]
+def mirror_across(s: Array, rate: Array, grid: BeamGrid) -> None:
+    """Set the curvature across the width at and beyond the ends: it is 0 where they are held."""
+    if grid.left == CLAMPED:
+        s[2] = rate[2] = 0.0
+    if grid.right == CLAMPED:
+        s[grid.last] = rate[grid.last] = 0.0
+    elif grid.right == SYMMETRIC:
+        s[grid.last + 1] = s[grid.last - 1]
 
 
 @inlined
-def mirror_halfway(field: Array, mid: int) -> None:
-    """Set the value beyond mid-span of an odd field, half-way from node i to i + 1 at index i."""
-    field[mid] = -field[mid - 1]
+def mirror_rotation(psi: Array, grid: BeamGrid) -> None:
+    """Set the rotations beyond both ends, half-way from node i to i + 1 at index i.
+
+    They are odd about an end that is clamped or symmetric, even about a free one, where the section
+    does not bend; half-way from a pinned end lies no such node.
+    """
+    if grid.left != PINNED:
+        psi[1] = psi[2] if grid.left == FREE else -psi[2]
+    if grid.right != PINNED:
+        psi[grid.last] = psi[grid.last - 1] if grid.right == FREE else -psi[grid.last - 1]
+
+
+@inlined
+def mirror_shear(Q: Array, grid: BeamGrid) -> None:
+    """Set the shear forces beyond the ends, as mirror_rotation; odd, but where nothing moves."""
+    Q[grid.first - 2] = -Q[grid.first - 1]
+    if grid.right != PINNED:
+        Q[grid.last] = -Q[grid.last - 1]
 
 
 @compiled

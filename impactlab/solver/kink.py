@@ -16,15 +16,16 @@ like steels: nothing is known of other metals.
 
 The kink needs no stress: a beam of two straight halves. So the kernels hold the deflection beyond
 that, `w + theta x/2`, x the distance from the support, in which all moments are as they were; the
-velocity is that of the beam. Against the moment M at mid-span the kink takes the work M d theta
-from the contact.
+velocity is that of the beam. Ends that are not pinned would hold it, and beside mid-span the halves
+would turn by other angles: model/contact_compliance.py refuses these. Against the moment M at
+mid-span the kink takes the work M d theta from the contact.
 """
 
 from __future__ import annotations
 
 import math
 
-from impactlab.solver.beam import BeamGrid, BeamState, mirror, mirror_halfway
+from impactlab.solver.beam import BeamGrid, BeamState, mirror, mirror_rotation
 from impactlab.solver.contact.history import Pair, yield_stress
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.jit import compiled
@@ -63,7 +64,7 @@ def bend_back(beam: BeamState, now: int, psi: Array, grid: BeamGrid, growth: flo
         beam.w[now, i + 1] += 0.5 * growth * i * grid.dx
         psi[i] += 0.5 * growth
     mirror(beam.w, 1 - now, beam.u, grid)
-    mirror_halfway(psi, grid.mid)
+    mirror_rotation(psi, grid)
 
 
 @compiled

@@ -6,6 +6,7 @@ Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
                       row sums of the curvatures' matrix, a free or clamped end's are smaller; a
                       free end that is struck has half the mass in the second term
     Timoshenko beam   4 (EI)_q/(rho I dx^2) + k G A/(rho I) + 4 k G A/(rho A dx^2) as first term
+                      with any ends, too
     strip             beside it (D_s + 4 T/dx^2)/m + 4 nu^2 D_s/(rho I dx^2), and the force's lever
                       on m in the contact's (strip.py): a sum of potentials has at most the sum of
                       their largest omega^2

@@ -22,7 +22,8 @@ elastic section's mode at wave number 0, with shear, rotary inertia and change o
 frequency where half a wave is as long as the width (model/contact_compliance.py has the tables). A
 thin plate's parabola would have D_s = D B, D = E H^3/(12 (1 - nu^2)), m = rho H B^5/720, l = B^2/24
 and T = (1 - nu) D B^3/6. Left out: the section's higher modes, which are as fast as the contact is
-stiff; what they do in statics is in the local compliance. s = 0 at the supports.
+stiff; what they do in statics is in the local compliance. s = 0 at the supports; no end is free
+(model/contact_compliance.py).
 
 Against the elastic section itself, under a sine's power 1.5 as long as the contact: the struck face
 errs by 0.12, 0.03 and 0.12 % on beams with H/B = 0.25, 0.46 and 0.67 (the thin plate: 1.2, 0.25 and
@@ -41,7 +42,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver import timoshenko
-from impactlab.solver.beam import COPIES, BeamGrid, mirror_even
+from impactlab.solver.beam import BeamGrid, mirror_across
 from impactlab.solver.contact.axis_lift import axis_lift
 from impactlab.solver.fibre_plasticity import curvature, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, vectorised
@@ -53,7 +54,7 @@ from impactlab.solver.types import ONE, Array, Record
 
 
 class Strip(NamedTuple):
-    """The state of a strip besides BeamState; all arrays (n + 4,), at nodes.
+    """The state of a strip besides BeamState; all arrays (last + 3,), at nodes.
 
     inertia: m (kg m3), 0 where nothing bends across; stiffness: D_s (N m2); twist: T (N m4);
     lever: l (m2). axis (m/N, m2): how much lower than the middle of the section the axis lies, per
@@ -79,7 +80,7 @@ class Strip(NamedTuple):
 @allocating
 def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Strip:
     """Return the state at rest."""
-    shear, size = timoshenko.make(case, section, grid), grid.mid + 3
+    shear, size = timoshenko.make(case, section, grid), grid.last + 3
     z, nu = 0.5 * case.beam_depth, case.beam_poissons_ratio
     pressure = (1.0 + nu) * (5.0 - 2.0 * nu) / (8.0 * math.pi * case.beam_youngs_modulus * z**3)
     return Strip(
@@ -103,56 +104,60 @@ def _step(state: State, now: int, F: float) -> None:
     _, section, grid, beam, plastic, strip = state
     per_dx = timoshenko.bend_sections(section, grid, beam, plastic, strip.shear, now)
     if strip.inertia > 0.0:
-        _stretch(strip, per_dx, grid.mid)
-        _push_back(strip, -1.0, grid.mid)
-        _swing(strip, grid.dt**2 / strip.inertia, per_dx, F, grid.mid)
+        _stretch(strip, per_dx, grid.last)
+        _push_back(strip, -1.0, grid.last)
+        _swing(strip, grid.dt**2 / strip.inertia, per_dx, F, grid)
     timoshenko.move(grid, beam, strip.shear, now, F, per_dx)
 
 
 @vectorised
-def _stretch(strip: Strip, per_dx: float, mid: int) -> None:
+def _stretch(strip: Strip, per_dx: float, last: int) -> None:
     psi = strip.shear.psi
-    for i in range(np.uint64(2), np.uint64(mid + 1)):
+    for i in range(np.uint64(2), np.uint64(last + 1)):
         strip.bent[i] = strip.s[i] + strip.nu * (psi[i] - psi[i - ONE]) * per_dx
 
 
 @vectorised
-def _push_back(strip: Strip, sign: float, mid: int) -> None:
+def _push_back(strip: Strip, sign: float, last: int) -> None:
     """Add nu D_s bent to the beam's moments, or take it away."""
     M, share = strip.shear.M, sign * strip.nu * strip.stiffness
-    for i in range(np.uint64(2), np.uint64(mid + 1)):
+    for i in range(np.uint64(2), np.uint64(last + 1)):
         M[i] += share * strip.bent[i]
 
 
 @vectorised
-def _swing(strip: Strip, push: float, per_dx: float, F: float, mid: int) -> None:
+def _swing(strip: Strip, push: float, per_dx: float, F: float, grid: BeamGrid) -> None:
     """Move s by one step; push = dt^2/m."""
     s, rate, d_rate, bent = strip.s, strip.rate, strip.d_rate, strip.bent
     T, D = strip.twist * per_dx * per_dx, strip.stiffness
-    mirror_even(s, mid)
-    for i in range(np.uint64(2), np.uint64(mid + 1)):
+    for i in range(np.uint64(2), np.uint64(grid.last + 1)):
         d_rate[i] = push * (T * (s[i - ONE] - 2.0 * s[i] + s[i + ONE]) - D * bent[i])
-    d_rate[mid] -= push * strip.lever * F * per_dx
-    for i in range(np.uint64(2), np.uint64(mid + 1)):
+    d_rate[grid.mid] -= push * strip.lever * F * per_dx
+    for i in range(np.uint64(2), np.uint64(grid.last + 1)):
         rate[i] += d_rate[i]
         s[i] += rate[i]
+    mirror_across(s, rate, grid)
 
 
 @vectorised
 def _width_energy(strip: Strip, grid: BeamGrid) -> float:
     """Return kinetic and elastic energy (J) of s after a step, at its beginning."""
-    s, rate, d_rate, bent, mid = strip.s, strip.rate, strip.d_rate, strip.bent, grid.mid
+    s, rate, d_rate, bent, last = strip.s, strip.rate, strip.d_rate, strip.bent, grid.last
     moved, bending, twisted = 0.0, 0.0, 0.0
-    for i in range(np.uint64(2), np.uint64(mid)):
+    for i in range(np.uint64(grid.first), np.uint64(grid.stop)):
         moved += rate[i] * (rate[i] - d_rate[i])
         bending += bent[i] * bent[i]
-    moved += 1.0 / COPIES * rate[mid] * (rate[mid] - d_rate[mid])
-    bending += 1.0 / COPIES * bent[mid] * bent[mid]
-    for i in range(np.uint64(1), np.uint64(mid)):
+    if grid.stop == last:
+        moved += 0.5 * rate[last] * (rate[last] - d_rate[last])
+        bending += 0.5 * bent[last] * bent[last]
+    if grid.first > 2:  # clamped: at rest
+        bending += 0.5 * bent[2] * bent[2]
+    for i in range(np.uint64(grid.first - 1), np.uint64(grid.stop)):
         slope = (s[i + ONE] - rate[i + ONE] - s[i] + rate[i]) / grid.dx
         twisted += slope * slope
     kinetic = strip.inertia * moved / grid.dt**2
-    return 0.5 * COPIES * grid.dx * (kinetic + strip.stiffness * bending + strip.twist * twisted)
+    per_length = kinetic + strip.stiffness * bending + strip.twist * twisted
+    return 0.5 * grid.copies * grid.dx * per_length
 
 
 @compiled
@@ -167,7 +172,7 @@ def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     stored, dissipated = plastic_energy(plastic, section, grid)
     total = stored + dissipated
     if strip.inertia > 0.0:
-        _push_back(strip, 1.0, grid.mid)  # the fibres' own moments; the next step sets them anew
+        _push_back(strip, 1.0, grid.last)  # the fibres' own moments; the next step sets them anew
         total += _width_energy(strip, grid)
     return total + timoshenko.shear_energy(beam, strip.shear, plastic.M_0, section.stiffness, grid)
 

@@ -12,7 +12,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver.beam import COPIES, BeamGrid, BeamState, mirror, mirror_halfway
+from impactlab.solver.beam import (
+    BeamGrid,
+    BeamState,
+    copies,
+    mirror,
+    mirror_rotation,
+    mirror_shear,
+)
 from impactlab.solver.contact_patch import spread_over_nodes
 from impactlab.solver.euler_bernoulli import deflected
 from impactlab.solver.fibre_plasticity import (
@@ -30,7 +37,7 @@ from impactlab.solver.types import ONE, Array, Record
 
 
 class Shear(NamedTuple):
-    """The state of a Timoshenko beam besides BeamState; all arrays (n + 4,).
+    """The state of a Timoshenko beam besides BeamState; all arrays (last + 3,).
 
     stiffness = k G A (N); inertia = rho I (kg m). psi: rotation, spin = dt psi_t its increment,
     d_spin the last change of that (rad), Q (N): half-way from node i to i + 1 at index i. M (N m):
@@ -49,7 +56,7 @@ class Shear(NamedTuple):
 @allocating
 def make(case: Record, section: FibreSection, grid: BeamGrid) -> Shear:
     """Return the state at rest."""
-    size = grid.mid + 3
+    size = grid.last + 3
     return Shear(
         case.shear_stiffness,
         case.rotary_inertia,
@@ -71,27 +78,29 @@ def bend_sections(
     now: int,
 ) -> float:
     """Set the moments of the fibres where a step begins; return 1/dx."""
-    psi, mid = shear.psi, grid.mid
+    psi = shear.psi
     if plastic.on_tangent[0] > 0 and follow_tangents(
         beam.w, now, psi, beam.plastic, plastic.M_0, plastic.on_tangent, plastic.tangent, grid
     ):
         leave_tangents(beam, now, psi, plastic, section, grid)
     EI, per_dx = section.stiffness, 1.0 / grid.dx
-    outside = _moments(shear, plastic, EI, per_dx, mid)
+    outside = _moments(shear, plastic, EI, per_dx, grid.last)
     if outside > 0.0:
         begin_tangents(beam, now, psi, outside, plastic, section, grid, beam.du, beam.du[:0])
-        _moments(shear, plastic, EI, per_dx, mid)
+        _moments(shear, plastic, EI, per_dx, grid.last)
     return per_dx
 
 
 @inlined
 def move(grid: BeamGrid, beam: BeamState, shear: Shear, now: int, F: float, per_dx: float) -> None:
     """Move rotation and deflection by one step, under the moments and the contact force F (N)."""
-    psi, Q, mid = shear.psi, shear.Q, grid.mid
-    _rotate(beam.w, now, shear, grid.dt**2 / shear.inertia, per_dx, mid)
-    mirror_halfway(psi, mid)
-    mirror_halfway(Q, mid)
-    _shift(beam.w, now, beam.u, beam.du, Q, grid.push, F, mid)
+    Q, mid = shear.Q, grid.mid
+    _rotate(beam.w, now, shear, grid.dt**2 / shear.inertia, per_dx, grid.first - 1, grid.stop)
+    mirror_rotation(shear.psi, grid)
+    mirror_shear(Q, grid)
+    _shift(beam.w, now, beam.u, beam.du, Q, grid.push, F / copies(grid, mid), mid, 2)
+    if grid.last > mid:
+        _shift(beam.w, now, beam.u, beam.du, Q, grid.push, 0.0, grid.last, mid + 1)
     mirror(beam.w, now, beam.u, grid)
 
 
@@ -104,12 +113,12 @@ def _step(state: State, now: int, F: float) -> None:
 
 @vectorised
 def _moments(
-    shear: Shear, plastic_state: PlasticState, EI: float, per_dx: float, mid: int
+    shear: Shear, plastic_state: PlasticState, EI: float, per_dx: float, last: int
 ) -> float:
     """Set the moments at the nodes; return how many sections are outside their elastic interval."""
     psi, M, M_0 = shear.psi, shear.M, plastic_state.M_0
     outside = 0.0
-    for i in range(np.uint64(2), np.uint64(mid + 1)):
+    for i in range(np.uint64(2), np.uint64(last + 1)):
         kappa = (psi[i] - psi[i - ONE]) * per_dx
         outside += 1.0 if kappa > plastic_state.kappa_max[i] else 0.0
         outside += 1.0 if kappa < plastic_state.kappa_min[i] else 0.0
@@ -118,10 +127,15 @@ def _moments(
 
 
 @vectorised
-def _rotate(w: Array, now: int, shear: Shear, turn: float, per_dx: float, mid: int) -> None:
-    """Set the shear force half-way between nodes and move the rotation; turn = dt^2/(rho I)."""
+def _rotate(
+    w: Array, now: int, shear: Shear, turn: float, per_dx: float, start: int, stop: int
+) -> None:
+    """Set the shear force half-way between nodes and move the rotation; turn = dt^2/(rho I).
+
+    start, stop: the ends.
+    """
     psi, spin, d_spin, Q, M = shear.psi, shear.spin, shear.d_spin, shear.Q, shear.M
-    for i in range(np.uint64(1), np.uint64(mid)):
+    for i in range(np.uint64(start), np.uint64(stop)):
         Q[i] = shear.stiffness * ((w[now, i + ONE] - w[now, i]) * per_dx - psi[i])
         d_spin[i] = turn * (Q[i] - (M[i + ONE] - M[i]) * per_dx)
         spin[i] += d_spin[i]
@@ -130,11 +144,19 @@ def _rotate(w: Array, now: int, shear: Shear, turn: float, per_dx: float, mid: i
 
 @vectorised
 def _shift(
-    w: Array, now: int, u: Array, du: Array, Q: Array, push: float, F: float, mid: int
+    w: Array,
+    now: int,
+    u: Array,
+    du: Array,
+    Q: Array,
+    push: float,
+    F: float,
+    mid: int,
+    start: int,
 ) -> None:
-    """Move the deflection by one step; push = dt^2/(rho A dx)."""
+    """Move the deflection from `start` to `mid`, where F acts; push = dt^2/(rho A dx)."""
     after = 1 - now
-    for i in range(np.uint64(2), np.uint64(mid)):
+    for i in range(np.uint64(start), np.uint64(mid)):
         du[i] = push * (Q[i] - Q[i - ONE])
         u[i] += du[i]
         w[after, i] = w[now, i] + u[i]
@@ -149,18 +171,22 @@ def shear_energy(beam: BeamState, shear: Shear, M_0: Array, EI: float, grid: Bea
 
     Kinetic as in beam.py, of deflection and rotation; elastic of bending (see there) and shear.
     """
-    u, du, spin, d_spin, mid = beam.u, beam.du, shear.spin, shear.d_spin, grid.mid
+    u, du, spin, d_spin, last = beam.u, beam.du, shear.spin, shear.d_spin, grid.last
     moved, turned, bent, sheared = 0.0, 0.0, 0.0, 0.0
-    for i in range(np.uint64(2), np.uint64(mid)):
+    for i in range(np.uint64(grid.first), np.uint64(grid.stop)):
         moved += u[i] * (u[i] - du[i])
         bent += shear.M[i] * shear.M[i] - M_0[i] * M_0[i]
-    moved += 1.0 / COPIES * u[mid] * (u[mid] - du[mid])
-    bent += 1.0 / COPIES * (shear.M[mid] * shear.M[mid] - M_0[mid] * M_0[mid])
-    for i in range(np.uint64(1), np.uint64(mid)):
+    if grid.stop == last:
+        moved += 0.5 * u[last] * (u[last] - du[last])
+        bent += 0.5 * (shear.M[last] * shear.M[last] - M_0[last] * M_0[last])
+    if grid.first > 2:
+        moved += 0.5 * u[2] * (u[2] - du[2])
+        bent += 0.5 * (shear.M[2] * shear.M[2] - M_0[2] * M_0[2])
+    for i in range(np.uint64(grid.first - 1), np.uint64(grid.stop)):
         turned += spin[i] * (spin[i] - d_spin[i])
         sheared += shear.Q[i] * shear.Q[i]
     moving = (grid.mu * moved + shear.inertia * turned) / grid.dt**2
-    return 0.5 * COPIES * grid.dx * (moving + bent / EI + sheared / shear.stiffness)
+    return 0.5 * grid.copies * grid.dx * (moving + bent / EI + sheared / shear.stiffness)
 
 
 @compiled

@@ -81,14 +81,32 @@ FAULTS = (
     Fault(
         "beam: wrong mirror node at mid-span",
         "beam.py",
-        "w[after, mid + 1] = w[after, mid - 1]",
-        "w[after, mid + 1] = w[after, mid - 2]",
+        "w[after, last + 1] = w[after, last - 1]",
+        "w[after, last + 1] = w[after, last - 2]",
     ),
     Fault(
         "beam: half of the contact force",
         "beam.py",
-        "dt**2 / (mu * dx))",
-        "0.5 * dt**2 / (mu * dx))",
+        "change = grid.push * F\n",
+        "change = 0.5 * grid.push * F\n",
+    ),
+    Fault(
+        "beam: a clamped end that turns",
+        "beam.py",
+        "w[end - inward], w[end - 2 * inward] = beside, inside",
+        "w[end - inward], w[end - 2 * inward] = -beside, inside",
+    ),
+    Fault(
+        "beam: a free end with a whole node's mass for plastic moments",
+        "beam.py",
+        "plastic[i + ONE] += 2.0 * share if",
+        "plastic[i + ONE] += share if",
+    ),
+    Fault(
+        "timoshenko: a clamped section that turns",
+        "beam.py",
+        "psi[1] = psi[2] if grid.left == FREE else -psi[2]",
+        "psi[1] = psi[2]",
     ),
     Fault(
         "beam: the wave front lags a node behind",

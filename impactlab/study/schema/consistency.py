@@ -20,7 +20,7 @@ from impactlab.model.impact import MID_SPAN, OTHER_BEAM
 from impactlab.model.parameters import PARAMETERS, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.model.quantities import shown
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS, WAVE_MODELS
 from impactlab.study.schema.declarations import FunctionStudy, ImpactStudy, StudyFile
 from impactlab.validation.errors import unknown
 from impactlab.validation.refusals import Base, refused_corner
@@ -174,7 +174,7 @@ def _impacts(file: StudyFile) -> Reasons:
             "has leapfrog alone: set scheme: leapfrog, or take out the beam model"
         )
         yield key_of("scheme", sampling), reason
-    yield from _other_beams(file, models, schemes)
+    yield from _other_beams(file, set(models), schemes)
     lumped = [name for name in LUMPED_MODELS if name in models]
     if lumped and "contact_patch" in values_of(sampling, "load", file.impact.load):
         reason = f"contact_patch is not for {lumped[0]}, which moves as one mass: set load: point"
@@ -186,7 +186,7 @@ def _impacts(file: StudyFile) -> Reasons:
             yield key_of(name, sampling), f"{ours[0]} {TIMOSHENKO_ALONE}"
 
 
-def _other_beams(file: StudyFile, models: tuple[Value, ...], schemes: set[Value]) -> Reasons:
+def _other_beams(file: StudyFile, models: set[Value], schemes: set[Value]) -> Reasons:
     """Check that other ends and places have a model and a scheme, and that a node is struck."""
     sampling, beam, grid = file.sampling, file.impact.beam, file.discretisation[0]
     places = values_of(sampling, "strike_position", file.impact.strike_position)
@@ -208,10 +208,11 @@ def _other_beams(file: StudyFile, models: tuple[Value, ...], schemes: set[Value]
     }
     if supports == {"pinned"} and set(places) == {MID_SPAN}:
         return
-    if set(models) - set(BENDING_MODELS):
-        reason = f"must be {' or '.join(BENDING_MODELS)} {OTHER_BEAM}"
+    if models - set(WAVE_MODELS):
+        reason = f"must be {' or '.join(WAVE_MODELS)} {OTHER_BEAM}"
         yield key_of("beam_model", sampling), reason
-    if schemes:
+    modal = "auto" in values_of(sampling, "scheme", grid.scheme) and models <= {*BENDING_MODELS}
+    if schemes or modal:
         yield key_of("scheme", sampling), f"must be leapfrog {OTHER_BEAM}"
 
 

@@ -83,6 +83,24 @@ def test_the_ends_of_distributions_count(refused, sample, given):
     refused(sample({key: given}), key, "above the speed of a bar wave")
 
 
+def test_other_ends_and_places_are_refused_where_nothing_solves_them(refused, read, grid):
+    coarse = {"discretisation.nodes": 41}
+    key = "sampling.parameters.strike_position"
+    places = {"sampling.parameters": {"strike_position": [0.25, 0.33]}}
+    refused(grid(coarse | places), key, "0.33 lies between two of the 41 nodes: take 0.325 or 0.35")
+    tip = {"sampling.parameters": {"strike_position": [0.0, 0.5]}}
+    refused(grid(coarse | tip), key, "or the place of a free end")
+    read(grid(coarse | tip | {"impact.beam": {"support_left": "free"}}))
+    clamped = coarse | {"sampling.parameters": {"support_left": ["pinned", "clamped"]}}
+    read(grid(clamped))
+    for scheme in ("modal", "auto"):
+        values = clamped | {"discretisation.scheme": scheme}
+        refused(grid(values), "discretisation.scheme", "must be leapfrog with ends that are not")
+    models = {"support_left": ["clamped"], "beam_model": ["elastic", "rigid"]}
+    key = "sampling.parameters.beam_model"
+    refused(grid(coarse | {"sampling.parameters": models}), key, "with ends that are not pinned")
+
+
 @pytest.mark.parametrize("model", ["timoshenko", "spring_mass", "rigid"])
 def test_a_scheme_that_a_model_has_not_is_refused_before_the_run(refused, read, grid, model):
     modal, key = {"discretisation": {"scheme": "modal"}}, "discretisation.scheme"
