@@ -8,6 +8,7 @@ are in analysis.nc.
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import groupby
@@ -80,13 +81,22 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
         numbers = np.concatenate([getattr(curve, key) for curve in curves])
         stored[key] = ("point", numbers, {"long_name": long_name})
     stored["category"] = ("point", [name for curve in curves for name in curve.category])
-    of_point = xr.DataArray(np.repeat(np.arange(len(curves)), sizes), dims="point")
-    table = stored.isel(curve=of_point).rename(curve_label="curve").to_dataframe()
-    header = [*_LABELS, "category", *_POINTS]
-    with replaced(paths[0]) as temporary:
-        table[header].to_csv(temporary, index=False, float_format="%.9g", lineterminator="\n")
+    with replaced(paths[0]) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")  # pandas formats numbers slowly
+        writer.writerow([*_LABELS, "category", *_POINTS])
+        for curve in curves:
+            texts = [getattr(curve, key) for key in _LABELS]
+            columns = [map(_number, getattr(curve, key).tolist()) for key in _POINTS]
+            writer.writerows(
+                [*texts, *point] for point in zip(curve.category, *columns, strict=True)
+            )
     write_netcdf(stored, paths[1], "figure", dated=False)
     return paths
+
+
+def _number(value: float) -> str:
+    """Return a number with nine digits, "" of NaN."""
+    return "" if value != value else f"{value:.9g}"
 
 
 def drawn(figure: Figure) -> Iterator[Drawn]:
