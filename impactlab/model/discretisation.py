@@ -31,8 +31,8 @@ class Discretisation:
         et al.).
     scheme : {"leapfrog", "modal", "auto"}, default "leapfrog"
         Scheme in time: "leapfrog" (the paper's: explicit, cost growing with nodes^3), "modal" (sine
-        modes, the same answers from far fewer nodes; solver/modal.py), or "auto": modal where every
-        beam model of the runs has it, else leapfrog.
+        modes, the same answers from far fewer nodes; solver/modal.py; for pinned beams struck at
+        mid-span), or "auto": modal where every beam model of the runs has it, else leapfrog.
     courant : Quantity, default 0.9
         Time step over the scheme's largest, in (0, 1]: of leapfrog, the critical one; of modal, the
         time in which a bar wave crosses a spacing, unless the contact allows less.

@@ -112,9 +112,9 @@ def notes(runs: xr.Dataset) -> Iterator[str]:
             yield " ".join(filter(None, parts))
     if "peak_plastic_strain" in runs:
         yield (
-            "In a perfectly plastic section the peak plastic strain (PEEQ) at mid-span does not "
-            "converge as the nodes get closer: with 3 Lobatto points it doubles with each halving "
-            "of the spacing, with 5 it still grows, and with 9 or more it grows slowly."
+            "In a perfectly plastic section the peak plastic strain (PEEQ) under the sphere does "
+            "not converge as the nodes get closer: with 3 Lobatto points it doubles with each "
+            "halving of the spacing, with 5 it still grows, and with 9 or more it grows slowly."
         )
     if "modal" in used["scheme"]:
         yield (
