@@ -14,7 +14,7 @@ signature, with a checksum, and a damaged file empties its folder.
 This module alone uses numba's private parts (`_PRIVATE`), for the cache and to compile sooner.
 Where one is missing, or under IMPACTLAB_PLAIN_NUMBA=1, every process compiles its kernels with
 numba's public options, which takes longer and gives the same bits: what is summed in another order
-in a second copy (`over_fibres` in solver/jit.py) is then inlined.
+in a second copy (`summing` in solver/jit.py) is then inlined.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from impactlab.solver import SUPPORTS
-from impactlab.solver.jit import allocating, compiled, inlined, vectorised
+from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
 from impactlab.solver.types import ONE, TWO, Array, Index
 
 
@@ -330,7 +330,7 @@ def kinetic_energy(beam: BeamState, grid: BeamGrid, now: int, u_mid: float) -> f
     return 0.5 * grid.mu * grid.dx / grid.dt**2 * total
 
 
-@vectorised
+@summing
 def _kinetic_sum(
     w: Array,
     now: int,
@@ -361,7 +361,7 @@ def bending_energy(beam: BeamState, M_0: Array, EI: float, grid: BeamGrid, now: 
     return grid.dx * _bending_sum(beam.w, now, M_0, EI, grid)
 
 
-@vectorised
+@summing
 def _bending_sum(w: Array, now: int, M_0: Array, EI: float, grid: BeamGrid) -> float:
     total, share, last = 0.0, 0.5, grid.last
     for i in range(np.uint64(grid.first), np.uint64(grid.stop)):

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver.beam import BeamGrid, BeamState, add_moment, copies
-from impactlab.solver.jit import allocating, compiled, vectorised
+from impactlab.solver.jit import allocating, compiled, summing
 from impactlab.solver.section import (
     FAR,
     FibreSection,
@@ -291,7 +291,7 @@ def plastic_energy(
     return stored * grid.dx, dissipated * grid.dx
 
 
-@vectorised
+@summing
 def plastic_energies(
     section: FibreSection, plastic_strain: Array, peeq: Array, i: int
 ) -> tuple[float, float]:

@@ -20,7 +20,7 @@ allocating = _COMPILER.decorator(allocates=True)
 """A record of an array does not keep it alive here, so arrays of records come from Python."""
 vectorised = _COMPILER.decorator(fastmath=True)
 """Free to reorder sums and blind to NaN: for loops over arrays."""
-over_fibres = _COMPILER.decorator(fastmath=True, inline=FOLDER is None)
+summing = _COMPILER.decorator(fastmath=True, inline=FOLDER is None)
 """As vectorised; inlined where each process compiles, whose kernel would link another copy, with
 sums in another order, than a kernel from the cache."""
 fused = _COMPILER.decorator(fastmath=True, inline=True)

@@ -13,7 +13,7 @@ import numpy as np
 
 from impactlab.solver.beam import BeamGrid
 from impactlab.solver.flight import Leaps, make_leaps, rest_leaps
-from impactlab.solver.jit import allocating, compiled, fused, vectorised
+from impactlab.solver.jit import allocating, compiled, fused, summing, vectorised
 from impactlab.solver.types import Array
 
 
@@ -138,7 +138,7 @@ def move_modes(
     return w
 
 
-@vectorised
+@summing
 def modal_energy(q: Array, u: Array, D: Array, push: Array, source: Array, F: float) -> float:
     """Return the energy in J of a step's beginning, above what plastic strains store unbent.
 

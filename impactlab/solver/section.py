@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver.jit import allocating, compiled, over_fibres
+from impactlab.solver.jit import allocating, compiled, summing
 from impactlab.solver.strain_rate import RateLaw, overstress, rate_law
 from impactlab.solver.types import ELASTIC, Array, Record
 
@@ -116,7 +116,7 @@ def with_rate(section: FibreSection, case: Record) -> FibreSection:
     )
 
 
-@over_fibres
+@summing
 def return_mapping(
     strain: float, plastic_strain: float, peeq: float, E: float, S_y: float, H_i: float, H_k: float
 ) -> tuple[float, float]:
@@ -130,7 +130,7 @@ def return_mapping(
     return plastic_strain, peeq
 
 
-@over_fibres
+@summing
 def elastic_range(
     plastic_strain: float, peeq: float, E: float, S_y: float, H_i: float, H_k: float
 ) -> tuple[float, float]:
@@ -152,7 +152,7 @@ def dissipated_energy(peeq: float, S_y: float, H_i: float) -> float:
     return (S_y + 0.5 * H_i * peeq) * peeq
 
 
-@over_fibres
+@summing
 def bend(
     section: FibreSection, kappa: float, plastic_strain: Array, peeq: Array, i: int
 ) -> tuple[float, float, float]:

@@ -45,7 +45,7 @@ from impactlab.solver import timoshenko
 from impactlab.solver.beam import BeamGrid, mirror_across
 from impactlab.solver.contact.axis_lift import axis_lift
 from impactlab.solver.fibre_plasticity import curvature, plastic_energy
-from impactlab.solver.jit import allocating, compiled, inlined, vectorised
+from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
 from impactlab.solver.kink import bend_back
 from impactlab.solver.section import FibreSection
 from impactlab.solver.state import State
@@ -139,7 +139,7 @@ def _swing(strip: Strip, push: float, per_dx: float, F: float, grid: BeamGrid) -
     mirror_across(s, rate, grid)
 
 
-@vectorised
+@summing
 def _width_energy(strip: Strip, grid: BeamGrid) -> float:
     """Return kinetic and elastic energy (J) of s after a step, at its beginning."""
     s, rate, d_rate, bent, last = strip.s, strip.rate, strip.d_rate, strip.bent, grid.last

@@ -30,7 +30,7 @@ from impactlab.solver.fibre_plasticity import (
     leave_tangents,
     plastic_energy,
 )
-from impactlab.solver.jit import allocating, compiled, inlined, vectorised
+from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
 from impactlab.solver.section import FibreSection
 from impactlab.solver.state import BeamModel, State
 from impactlab.solver.types import ONE, Array, Record
@@ -165,7 +165,7 @@ def _shift(
     w[after, mid] = w[now, mid] + u[mid]
 
 
-@vectorised
+@summing
 def shear_energy(beam: BeamState, shear: Shear, M_0: Array, EI: float, grid: BeamGrid) -> float:
     """Return the beam's energy in J after a step, at its beginning, without plastic strains'.
 
