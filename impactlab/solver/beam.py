@@ -48,9 +48,9 @@ class BeamGrid(NamedTuple):
 
     per_dx2 = 1/dx^2. Shares in w of one step: factor = dt^2/(mu dx^2) of a second difference of
     moments, stiffness = factor EI/dx^2 of a fourth difference of w, push = dt^2/(mu dx) of a
-    force. last: index of the last node moved; first, stop: those
-    from first to before stop are no ends. left, right: kinds of the ends. copies: number of nodes
-    of the whole beam that such a node stands for.
+    force. last: index of the last node moved; first, stop: those from first to before stop are no
+    ends. left, right: kinds of the ends. copies: number of nodes of the whole beam that such a node
+    stands for.
     """
 
     mid: int

@@ -168,7 +168,7 @@ def timoshenko_determinant(impact, left, right, speed):
 
 
 def timoshenko_frequencies(impact, left, right, nodes):
-    """Of the solver's beam (rad/s), ascending, from the accelerations of its steps."""
+    """Return the frequencies of the solver's beam (rad/s), ascending, from its accelerations."""
     grid = il.Discretisation(nodes=nodes)
     case = case_table(held(left, right, 4 / (nodes - 1), impact), grid, duration=1e-3)[0]
     section, columns = fibre_section(case), []

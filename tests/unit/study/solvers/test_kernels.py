@@ -1,4 +1,4 @@
-"""What is compiled before a study's runs is what they need."""
+"""A study's runs need no kernel but those compiled before them."""
 
 import itertools
 
