@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from impactlab.solver.beam import BeamGrid
-from impactlab.solver.contact import LAWS, finite_element
+from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.finite_element import (
     LARGEST_CIRCLE,
     LARGEST_CIRCLE_ACROSS,
@@ -80,11 +80,6 @@ def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) ->
     else:
         answer.total_contact_time = events.time_in_contact
         answer.permanent_indentation = contact.delta_r
-        if pair.law == _FINITE_ELEMENT:
-            of = pair.E, pair.R, yield_stress(contact, pair)
-            answer.permanent_indentation = finite_element.dent(
-                contact.delta_m, contact.delta_r, *of
-            )
         answer.impulse = events.impulse
         answer.mean_force = events.impulse / events.time_in_contact
         _, answer.contact_dissipation = energies(contact, pair, events.delta)

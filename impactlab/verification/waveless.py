@@ -57,7 +57,7 @@ def _compare_law(
     peak, force = run.peak_force.item(), law.loading_force(deepest)
     # The dent passes through zero, hence its error is relative to the largest indentation.
     dent = run.permanent_indentation.item() / deepest
-    left = law.permanent_indentation(deepest) / deepest
+    left = law.residual_indentation(deepest) / deepest
     lost = run.contact_dissipation.item() / (0.5 * mass * velocity**2)
     share = 1.0 - restitution**2
     comparisons = Comparisons(where)
@@ -103,7 +103,7 @@ def contact_laws() -> Finding:
         deepest = [law.maximum_indentation(float(v), mass) for v in fine]
         expected = {
             "restitution": [law.restitution(float(v), mass) for v in fine],
-            "permanent_indentation": [law.permanent_indentation(depth) for depth in deepest],
+            "permanent_indentation": [law.residual_indentation(depth) for depth in deepest],
         }
         for variable, curves in against_velocity.items():
             ours = np.array([run[variable].item() for run in runs.values()])

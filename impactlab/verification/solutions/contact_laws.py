@@ -190,7 +190,8 @@ def finite_unloading(d: float, F: float, E: float, R: float, S: float, nu: float
         math.fsum(map(math.prod, zip(terms[i : i + 4], powers, strict=True))) for i in (5, 9)
     )
     share = 1.0 + 0.33 * w + shares + strain[1] * w**2 * root
-    n = 1.5 - 0.14 * w + exponents + strain[2] * w**2 * root
+    n = 1.5 - 0.081 * w + exponents + strain[2] * w**2 * root
+    share *= 1.0 + 0.027 * w
     return F, d - share * d_y * math.sqrt(F / hertz(d_y, E, R, S, nu)), n
 
 
@@ -284,18 +285,6 @@ class LawOnHalfSpace:
     def residual_indentation(self, indentation: float) -> float:
         """Return the residual of `indentation`, in m."""
         return self.unloading(indentation)[1]
-
-    def permanent_indentation(self, indentation: float) -> float:
-        """Return what a dent of `indentation` leaves, in m: the residual, less a tail in a fit."""
-        residual = self.residual_indentation(indentation)
-        if self.law != "finite_element" or residual == 0.0:
-            return residual
-        first_yield = (
-            self.effective_radius
-            * (0.825 * math.pi * self.yield_stress / self.effective_modulus) ** 2
-        )
-        tail = 0.027 * (1.0 - math.sqrt(first_yield / indentation))
-        return residual - tail * (indentation - residual)
 
     def loading_work(self, indentation: float) -> float:
         """Integrate the force up to `indentation`, in J: adaptive quadrature between joints."""

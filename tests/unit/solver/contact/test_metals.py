@@ -28,8 +28,11 @@ def shape_of(row):
 
 
 def test_force_and_unloading_are_those_of_the_finite_elements():
-    """Force by thirds of each loading in the law's range; of unloading, force over the largest."""
-    forces, unloading = [], []
+    """Force by thirds of each loading in the law's range; of unloading, force over the largest.
+
+    And where it ends, of what is recovered: where F^(2/3) of its last tenth vanishes.
+    """
+    forces, unloading, ends = [], [], []
     for _, run in DATA.groupby("run"):
         S_y, of = E / run.E_over_S.iloc[0], shape_of(run.iloc[0])
         delta_y = yield_indentation(E, R, S_y)
@@ -46,11 +49,21 @@ def test_force_and_unloading_are_those_of_the_finite_elements():
             largest = loading.F[loading.x == top]
             if len(largest):
                 unloading.append(left / F_m - F / largest.iloc[0])
+        for top, branch in run[run.x < run.x_max].groupby("x_max"):
+            share = branch.F / loading.F[loading.x == top].max()
+            last = (share > 0.015) & (share < 0.12)
+            slope, start = np.polyfit(branch.x[last], share[last] ** (2 / 3), 1)
+            delta_r = tops[top][2] / delta_y
+            if last.sum() > 2 and delta_r < 0.4 * top:
+                ends.append((delta_r + start / slope) / (top - delta_r))
     forces = np.array(forces)
     assert len(forces) > 200
     assert np.sqrt((forces**2).mean(axis=0)).max() < 0.011
     assert abs(forces).max() < 0.05
-    assert np.sqrt(np.mean(np.square(unloading))) < 0.0125
+    assert np.sqrt(np.mean(np.square(unloading))) < 0.0127
+    assert len(ends) > 100
+    assert abs(np.mean(ends)) < 0.005
+    assert np.sqrt(np.mean(np.square(ends))) < 0.007
 
 
 def metals_within_the_data(number):
