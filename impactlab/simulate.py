@@ -13,6 +13,7 @@ import numpy as np
 
 from impactlab.duration import too_short
 from impactlab.jit import precompile
+from impactlab.model.beam_modes import mode_keys, mode_table
 from impactlab.model.case_table import case_table
 from impactlab.model.checks import instance, integer, positive
 from impactlab.model.discretisation import Discretisation
@@ -368,13 +369,17 @@ def solve(
     strains = np.full((2, runs, nodes, fibres), np.nan)
     contacts, events = np.zeros(runs, CONTACT), np.zeros(runs, EVENTS)
     arrays = (responses, contacts, events, histories, deflection, *strains)
-    kinds = np.stack([cases["beam_model"], cases["scheme"], is_extended(cases)])
+    models, schemes = cases["beam_model"], cases["scheme"]
+    kinds = np.stack([models, schemes, is_extended(cases), mode_keys(cases)])
     starts = np.flatnonzero(np.diff(kinds, prepend=-1).any(axis=0))
     for start, end in itertools.pairwise((*starts, runs)):
-        model, scheme, extended = kinds[:, start]
+        model, scheme, extended, _ = kinds[:, start]
         compile_kernels([BEAM_MODELS[model]], [SCHEMES[scheme]], [bool(extended)])
         kernel_of(model, scheme, bool(extended))(
-            cases[start:end], table[start:end], *(array[start:end] for array in arrays)
+            cases[start:end],
+            table[start:end],
+            mode_table(cases[start]),
+            *(array[start:end] for array in arrays),
         )
     columns = {name: responses[name].copy() for name in responses.dtype.names or ()}
     if samples:

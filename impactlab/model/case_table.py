@@ -12,7 +12,7 @@ from impactlab import wings
 from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import case_fields
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import MID_SPAN, OTHER_BEAM, Beam, Impact
+from impactlab.model.impact import Beam, Impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
 from impactlab.solver import (
     BEAM_MODELS,
@@ -20,11 +20,9 @@ from impactlab.solver import (
     LOADS,
     LUMPED_MODELS,
     SCHEMES,
-    SUPPORTS,
 )
 from impactlab.solver.types import CASE
 
-PINNED = SUPPORTS.index("pinned")
 _ON_NODE = 1e-6
 """Distance (spacings) from a node at which a strike lies on it."""
 
@@ -74,10 +72,6 @@ def case_table(
             raise ValueError(
                 f"{run}{name} = {word!r}: beam_model = {model!r} has {only!r} alone{reason}"
             )
-    refused = (cases["scheme"] == SCHEMES.index("modal")) & ~pinned_halves(cases)
-    if refused.any():
-        run = f"run {first_run + int(refused.argmax())}: " if varied else ""
-        raise ValueError(f"{run}scheme = 'modal': must be leapfrog {OTHER_BEAM}")
     between = cases["strike_position"] * (cases["nodes"] - 1)
     refused = abs(between - between.round()) > _ON_NODE
     if refused.any():
@@ -103,12 +97,6 @@ def between_nodes(place: float, nodes: int) -> str:
     nearest = min(finer, key=lambda n: abs(n + 1 - nodes), default=0)
     other = f", or {nearest + 1} nodes" if nearest else ""
     return f"lies between two of the {nodes} nodes: take {low} or {high}{other}"
-
-
-def pinned_halves(cases: Any) -> Any:
-    """Return which cases are of pinned beams struck in the middle."""
-    pinned = (cases["support_left"] == PINNED) & (cases["support_right"] == PINNED)
-    return pinned & (cases["strike_position"] == MID_SPAN)
 
 
 def _one_by_one(

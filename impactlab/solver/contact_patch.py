@@ -66,6 +66,14 @@ def wave_share(z: float) -> float:
 
 
 @compiled
+def fading_share(z: float) -> float:
+    """Return the integral of phi(x) cosh(k x), z = k a."""
+    if z < 0.1:
+        return 1.0 + z * z / 10.0 * (1.0 + z * z / 28.0 * (1.0 + z * z / 54.0))
+    return 3.0 * (z * math.cosh(z) - math.sinh(z)) / z**3
+
+
+@compiled
 def spread_over_nodes(
     beam: BeamState, grid: BeamGrid, now: int, F: float, a: float
 ) -> tuple[float, float, int]:

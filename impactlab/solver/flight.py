@@ -56,7 +56,7 @@ class Leaps(NamedTuple):
     a leap, by level, the second difference of slow modes and the swing of fast ones (m),
     (2, MOST + 1). watched: the number of sections
     that could yield, then which they are; kappa: their curvatures before and after a leap that is
-    tried, second difference of slow modes, and swing of fast ones (1/m), (4, n + 1).
+    tried, second difference of slow modes, and swing of fast ones (1/m), (4, sections + 1).
 
     memory: whether `swing` holds; the level to try next; steps to wait before, and next time;
     whether `kappa` holds; the highest level of the tables.
@@ -87,8 +87,8 @@ class Leaps(NamedTuple):
 
 
 @allocating
-def make_leaps(n: int) -> Leaps:
-    """Return room for the leaps of n modes."""
+def make_leaps(n: int, sections: int) -> Leaps:
+    """Return room for the leaps of n modes and so many sections."""
     return Leaps(
         np.empty((MOST + 1, n)),
         np.empty((MOST + 1, n)),
@@ -97,8 +97,8 @@ def make_leaps(n: int) -> Leaps:
         np.empty(n),
         np.empty(2),
         np.empty((2, MOST + 1)),
-        np.empty(n + 1, dtype=np.int64),
-        np.empty((4, n + 1)),
+        np.empty(sections + 1, dtype=np.int64),
+        np.empty((4, sections + 1)),
         np.empty(6, dtype=np.int64),
         np.empty(2),
         np.empty(_ROOM, dtype=np.int64),

@@ -118,7 +118,8 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     beneath the contact and damping, which other kernels are free of, so that they compile sooner.
 
     It solves every case of R, by records and arrays of as many rows. cases: CASE records. fibres:
-    as by model.section.fibre_table. answers: blank RESPONSE records, filled. contacts, events:
+    as by model.section.fibre_table. table: of modes, by model.beam_modes, which all cases share, or
+    empty. answers: blank RESPONSE records, filled. contacts, events:
     zeros, CONTACT and EVENTS records to work in. samples: shape (R, 5, S), filled with force,
     mid-span deflection, mid-span curvature, sphere displacement and indentation at S equal
     intervals from 0 to the duration; S = 0 for none. deflection (R, nodes), plastic_strain and peeq
@@ -128,12 +129,14 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     A record does not keep its array alive in compiled code, so kernels make no arrays of records:
     those of all runs are the caller's, who holds them until this returns.
     """
-    make, renew, deflect, run = model.make, model.renew, model.deflect, _run(model, extended)
+    make, renew, take, deflect = model.make, model.renew, model.take, model.deflect
+    run = _run(model, extended)
     cut = _section_at_rate if extended else cut_section
 
     def kernel(
         cases: Array,
         fibres: Array,
+        table: Array,
         answers: Array,
         contacts: Array,
         events: Array,
@@ -150,6 +153,8 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
             section = cut(first, fibres[start], room)
             beam, plastic = make_beam(size), make_plastic_state(size, section)
             extra = make(first, section, size)
+            if take is not None:
+                take(extra, table)
             for r in range(start, stop):
                 case, pair = cases[r], make_pair(cases[r])
                 section = cut(case, fibres[r], room)

@@ -31,8 +31,8 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.beam import BeamGrid, copies
-from impactlab.solver.contact_patch import wave_share
+from impactlab.solver.beam import BeamGrid, copies, is_end
+from impactlab.solver.contact_patch import fading_share, wave_share
 from impactlab.solver.fibre_plasticity import PlasticState, flow, plastic_energy
 from impactlab.solver.flight import (
     BENT,
@@ -63,6 +63,8 @@ from impactlab.solver.modes import (
     mode_curvature,
     move_modes,
     rest_modes,
+    span,
+    take_modes,
 )
 from impactlab.solver.section import FibreSection, bend
 from impactlab.solver.state import BeamModel, Flight, State
@@ -76,14 +78,14 @@ _PATIENCE = 14
 
 
 @inlined
-def _look_at_all(modes: Modes, plastic: PlasticState, mid: int) -> None:
+def _look_at_all(modes: Modes, plastic: PlasticState, mid: int, last: int) -> None:
     """Find the sections that could yield in the next steps, and how long that holds."""
     near, pace = 0, 0.0
     for p in range(modes.q.size):
         modes.seen[p] = modes.q[p]
         pace += modes.k2[p] * abs(modes.u[p])
     modes.slack[0] = plastic.kappa_max[mid] - plastic.kappa_min[mid]
-    for i in range(2, mid + 1):
+    for i in range(2, last + 1):
         kappa = mode_curvature(modes.q, modes.bent, i)
         left = min(plastic.kappa_max[i] - kappa, kappa - plastic.kappa_min[i])
         if left <= _STEPS_UNSEEN * pace:
@@ -118,7 +120,7 @@ def bend_sections(
 ) -> None:
     """Bend the sections that yield, and bring their moments to the modes."""
     if modes.slack[1] >= modes.slack[0]:
-        _look_at_all(modes, plastic, grid.mid)
+        _look_at_all(modes, plastic, grid.mid, grid.last)
     for k in range(1, modes.near[0] + 1):
         i = modes.near[k]
         kappa = mode_curvature(modes.q, modes.bent, i)
@@ -142,7 +144,7 @@ def _renew(modes: Modes, section: FibreSection, grid: BeamGrid) -> None:
 
 @inlined
 def _step(state: State, now: int, F: float) -> None:
-    q, u, k2, D, push, source, _, seen, near, slack, _, leaps = state.extra
+    q, u, k2, D, push, source, _, seen, near, slack, _, leaps, _ = state.extra
     w, mid = state.beam.w, state.grid.mid
     if near[0] > 0 or slack[1] >= slack[0]:
         bend_sections(state.extra, state.plastic, state.section, state.grid)
@@ -166,7 +168,19 @@ def _energy(state: State, now: int, F: float, u_mid: float) -> float:
 
 @compiled
 def _deflect(state: State, now: int) -> None:
-    deflect(state.extra, state.beam.w, now, state.grid.mid)
+    deflect(state.extra, state.beam.w, now, state.grid.last)
+
+
+@compiled
+def _share(modes: Modes, grid: BeamGrid, p: int, a: float) -> float:
+    """Return the share of the force on mode p, when it is spread over the radius a (m)."""
+    table = modes.table
+    if table.size == 0:
+        return float(wave_share(math.sqrt(modes.k2[p]) * a))
+    if p == table.shape[1] - 1 or is_end(grid, grid.mid):  # nothing is spread beyond an end
+        return 1.0
+    z = math.sqrt(table[0, p]) / span(grid) * a
+    return float(table[2, p] * wave_share(z) + (1.0 - table[2, p]) * fading_share(z))
 
 
 @compiled
@@ -174,7 +188,7 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
     q, u, k2, push = state.extra.q, state.extra.u, state.extra.k2, state.extra.push
     w, mean, moved, change = state.beam.w[1 - now], 0.0, 0.0, 0.0
     for p in range(q.size):
-        share = wave_share(math.sqrt(k2[p]) * a)
+        share = _share(state.extra, state.grid, p, a)
         back = push[p] * F * (1.0 - share)
         u[p] -= back
         q[p] -= back
@@ -191,7 +205,8 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
 def _begin_flight(modes: Modes, plastic: PlasticState, EI: float, grid: BeamGrid) -> None:
     """Bound the free motion from here on, and list the sections that could yield in it.
 
-    A simply supported beam at rest without a force has no moment: its curvature is M_0/EI.
+    A simply supported beam at rest without a force has no moment: its curvature is M_0/EI. That of
+    others follows from the modes, and may be largest at an end.
     """
     leaps = modes.leaps
     swing, watched = leaps.swing, leaps.watched
@@ -208,10 +223,12 @@ def _begin_flight(modes: Modes, plastic: PlasticState, EI: float, grid: BeamGrid
         leaps.bounds,
     )
     watched[0] = 0
-    for i in range(2, grid.mid + 1):
-        kappa = plastic.M_0[i] / EI
+    sines = modes.table.size == 0
+    for i in range(2, grid.last + 1):
+        kappa = plastic.M_0[i] / EI if sines else mode_curvature(leaps.rest, modes.bent, i)
         left = min(plastic.kappa_max[i] - kappa, kappa - plastic.kappa_min[i])
-        if min(swing[MOST_KAPPA], (i - 1) * grid.dx * swing[MOST_SLOPE]) < left:
+        most = (i - 1) * grid.dx * swing[MOST_SLOPE] if sines else swing[MOST_KAPPA]
+        if min(swing[MOST_KAPPA], most) < left:
             continue
         most, bend, noise = section_swing(leaps.A, modes.D, modes.bent, i)
         if not most < left:
@@ -318,4 +335,5 @@ MODEL = BeamModel(
     flight_stride=64,
     flight=Flight(_leap, _retrace, _largest),
     renew=_renew,
+    take=take_modes,
 )

@@ -1,7 +1,8 @@
-"""The sine modes of a half beam: what a run keeps of them, and the loops over them.
+"""The modes of a beam: what a run keeps of them, and the loops over them.
 
 The scheme's equations are in modal.py; see there for D, and for the last entry, which stands for
-all modes left out.
+all modes left out. They are sines in a pinned half beam; of others, a table comes from outside
+(model/beam_modes.py), which `take_modes` hands on.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver.beam import BeamGrid
+from impactlab.solver.beam import CLAMPED, PINNED, SYMMETRIC, BeamGrid
 from impactlab.solver.flight import Leaps, make_leaps, rest_leaps
 from impactlab.solver.jit import allocating, compiled, fused, summing, vectorised
 from impactlab.solver.types import Array
@@ -20,13 +21,15 @@ from impactlab.solver.types import Array
 class Modes(NamedTuple):
     """The modes of a run, n of them, and the sum of those left out in entry n.
 
-    q: amplitude (m). u: dt dq/dt half a step before (m). k2: k_p^2 (1/m2). D: see modal.py. push:
+    q: amplitude (m), by the deflection at the struck node. u: dt dq/dt half a step before (m). k2:
+    the largest curvature per amplitude, k_p^2 of sines (1/m2). D: see modal.py. push:
     D/K (m/N). source (N): sum over the nodes of M_0 times the mode's curvature. Each (n + 1,).
-    bent: curvature of node i per amplitude, (n + 4, n + 1), 1/m2; nodes as in beam.py. seen: q when
+    bent: curvature of node i per amplitude, (last + 3, n + 1), 1/m2; nodes as in beam.py. seen: q when
     all sections were last looked at, (n + 1,). near: the number of sections that could yield before
-    the next such look, then which they are, (n + 1,). slack: what the curvature of any other may
+    the next such look, then which they are, (last,). slack: what the curvature of any other may
     have changed by until that look, and can have changed by now (1/m), (2,). cosine: of quarter
-    turns over n, (4 n,). leaps: see flight.py.
+    turns over n, (4 n,). leaps: see flight.py. table: that of model/beam_modes.py, (3 + 2 last - 2,
+    n + 1); of sines without any entry.
     """
 
     q: Array
@@ -41,12 +44,26 @@ class Modes(NamedTuple):
     slack: Array
     cosine: Array
     leaps: Leaps
+    table: Array
+
+
+_RIGID = 1e-30
+"""D of a mode that does not bend the beam: as good as none, and no division by zero."""
+
+
+@compiled
+def has_sines(grid: BeamGrid) -> bool:
+    """Return whether the modes are sines: of a pinned half beam."""
+    return bool(grid.left == PINNED and grid.right == SYMMETRIC)
 
 
 @allocating
 def make_modes(grid: BeamGrid, EI: float, yield_curvature: float) -> Modes:
-    """Return the modes of a half beam, as many as it has spacings, at rest."""
-    n = grid.mid - 1
+    """Return the modes, at rest, as many as nodes move; those of others than sines are blank."""
+    n = grid.last - 1
+    for kind in (grid.left, grid.right):
+        n -= 1 if kind == CLAMPED else 0
+    sines = has_sines(grid)
     cosine = np.zeros(4 * n)
     for i in range(n):
         cosine[i] = math.cos(0.5 * math.pi * i / n)
@@ -60,20 +77,41 @@ def make_modes(grid: BeamGrid, EI: float, yield_curvature: float) -> Modes:
         np.empty(n + 1),
         np.empty(n + 1),
         np.empty(n + 1),
-        np.zeros((grid.mid + 3, n + 1)),
+        np.zeros((grid.last + 3, n + 1)),
         np.empty(n + 1),
-        np.empty(n + 1, dtype=np.int64),
+        np.empty(grid.last, dtype=np.int64),
         np.empty(2),
         cosine,
-        make_leaps(n + 1),
+        make_leaps(n + 1, grid.last - 1),
+        np.zeros((0 if sines else 1 + 2 * grid.last, 0 if sines else n + 1)),
     )
-    rest_modes(modes, grid, EI, yield_curvature)
+    if sines:
+        rest_modes(modes, grid, EI, yield_curvature)
     return modes
 
 
 @compiled
+def take_modes(modes: Modes, table: Array) -> None:
+    """Take over a table of modes; rest_modes makes them those of a beam."""
+    for i in range(modes.table.shape[0]):
+        for p in range(modes.table.shape[1]):
+            modes.table[i, p] = table[i, p]
+
+
+@compiled
 def rest_modes(modes: Modes, grid: BeamGrid, EI: float, yield_curvature: float) -> None:
-    """Make the modes those of another half beam of as many spacings, at rest."""
+    """Make the modes those of another beam of as many spacings and the same ends, at rest."""
+    if modes.table.size > 0:
+        _scale_table(modes, grid, EI)
+    else:
+        _scale_sines(modes, grid, EI)
+    modes.near[0] = 0
+    modes.slack[0], modes.slack[1] = yield_curvature, 0.0
+    rest_leaps(modes.leaps)
+
+
+@compiled
+def _scale_sines(modes: Modes, grid: BeamGrid, EI: float) -> None:
     n, speed = modes.q.size - 1, grid.dt * math.sqrt(EI / grid.mu)
     length = n * grid.dx
     left = length**3 / (6.0 * EI)  # of the static deflection per force, less the modes so far
@@ -91,9 +129,32 @@ def rest_modes(modes: Modes, grid: BeamGrid, EI: float, yield_curvature: float) 
         for p in range(n):
             modes.bent[grid.mid - i, p] = -modes.k2[p] * modes.cosine[angle]
             angle += 2 * i if angle + 2 * i < 4 * n else 2 * i - 4 * n
-    modes.near[0] = 0
-    modes.slack[0], modes.slack[1] = yield_curvature, 0.0
-    rest_leaps(modes.leaps)
+
+
+@compiled
+def span(grid: BeamGrid) -> float:
+    """Return the span of the whole beam (m)."""
+    return grid.copies * (grid.stop - grid.first + 1) * grid.dx
+
+
+@compiled
+def _scale_table(modes: Modes, grid: BeamGrid, EI: float) -> None:
+    n, length, table = modes.q.size - 1, span(grid), modes.table
+    speed, mass = grid.dt * math.sqrt(EI / grid.mu) / length**2, grid.mu * length
+    for p in range(n + 1):
+        b2 = table[0, p]
+        D = 4.0 * math.sin(0.5 * min(speed * b2, 0.5 * math.pi)) ** 2
+        modes.D[p] = D if b2 > 0.0 else _RIGID
+        if p == n:
+            modes.push[p] = D * table[1, p] * length**3 / EI
+        elif b2 > 0.0:
+            modes.push[p] = D * table[1, p] * length**3 / (EI * b2 * b2)
+        else:
+            modes.push[p] = grid.dt**2 * table[1, p] / mass
+        modes.q[p] = modes.u[p] = modes.source[p] = modes.seen[p] = modes.k2[p] = 0.0
+        for i in range(2, grid.last + 1):
+            modes.bent[i, p] = table[grid.last + i, p] / length**2
+            modes.k2[p] = max(modes.k2[p], abs(modes.bent[i, p]))
 
 
 @fused
@@ -153,9 +214,12 @@ def modal_energy(q: Array, u: Array, D: Array, push: Array, source: Array, F: fl
 
 
 @compiled
-def deflect(modes: Modes, w: Array, now: int, mid: int) -> None:
+def deflect(modes: Modes, w: Array, now: int, last: int) -> None:
     """Set the nodes' deflections w[now] (m) at the beginning of the last step."""
-    for i in range(2, mid + 1):
+    for i in range(2, last + 1):
         w[now, i] = 0.0
         for p in range(modes.q.size - 1):
-            w[now, i] -= modes.bent[i, p] / modes.k2[p] * (modes.q[p] - modes.u[p])
+            if modes.table.size > 0:
+                w[now, i] += modes.table[1 + i, p] * (modes.q[p] - modes.u[p])
+            else:
+                w[now, i] -= modes.bent[i, p] / modes.k2[p] * (modes.q[p] - modes.u[p])

@@ -43,7 +43,8 @@ class BeamModel(NamedTuple):
     """A model of the beam in one scheme: compiled functions, from which kernels.py makes a kernel.
 
     make(case, section, grid): State.extra at rest. renew(extra, section, grid): put it back to
-    rest, for another case of as many nodes; None: `make` does. step(state, now, F): move the beam
+    rest, for another case of as many nodes; None: `make` does. take(extra, table): hand on a table
+    of modes made outside, if any. step(state, now, F): move the beam
     under the contact force F (N). curvature(state, now): at mid-span, 1/m. energy(state, now, F,
     u_mid): the beam's in J, plastic strains' included, after a step, at its beginning; u_mid: u at
     mid-span before it (m). deflect(state, now): set all of beam.w[now] in the end. spread(state,
@@ -66,6 +67,7 @@ class BeamModel(NamedTuple):
     flight_stride: int = 1
     flight: Flight | None = None
     renew: Callable[..., None] | None = None
+    take: Callable[..., None] | None = None
     sag: Callable[..., float] | None = None
     beneath: Callable[..., float] | None = None
     lift: Callable[..., float] | None = None

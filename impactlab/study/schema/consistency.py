@@ -211,9 +211,6 @@ def _other_beams(file: StudyFile, models: set[Value], schemes: set[Value]) -> Re
     if models - set(WAVE_MODELS):
         reason = f"must be {' or '.join(WAVE_MODELS)} {OTHER_BEAM}"
         yield key_of("beam_model", sampling), reason
-    modal = "auto" in values_of(sampling, "scheme", grid.scheme) and models <= {*BENDING_MODELS}
-    if schemes or modal:
-        yield key_of("scheme", sampling), f"must be leapfrog {OTHER_BEAM}"
 
 
 def _further_models(file: StudyFile) -> Reasons:
