@@ -30,11 +30,12 @@ from typing import Any
 import numpy as np
 
 from impactlab.solver import SCHEMES, SUPPORTS
-from impactlab.solver.stability import struck_node
 
 Array = np.ndarray[Any, Any]
 
 _SPRINGS = {"pinned": (np.inf, 0.0), "clamped": (np.inf, np.inf), "free": (0.0, 0.0)}
+_TABLED = ("support_left", "support_right", "nodes", "strike_position")
+"""Fields of a case on which its table depends."""
 _HALVINGS, _SECANTS = 40, 6
 _LEFT_OUT = 3
 """Modes of which the sum of those left out is made, over those kept; the rest is estimated."""
@@ -52,10 +53,11 @@ def has_table(cases: Any) -> Any:
 
 def mode_keys(cases: Any) -> Any:
     """Return a number per case, the same for those with the same table; 0 without any."""
-    names = ["support_left", "support_right", "nodes", "strike_position"]
-    columns = np.stack([cases[name].astype(float) for name in names])
-    _, keys = np.unique(columns, axis=1, return_inverse=True)
-    return np.where(has_table(cases), 1 + keys.reshape(-1), 0)
+    keys, tabled = np.zeros(cases.size, dtype=np.int64), np.flatnonzero(has_table(cases))
+    if tabled.size:
+        columns = np.stack([cases[name][tabled].astype(float) for name in _TABLED])
+        keys[tabled] = 1 + np.unique(columns, axis=1, return_inverse=True)[1].reshape(-1)
+    return keys
 
 
 def mode_table(case: Any) -> Array:
@@ -63,7 +65,9 @@ def mode_table(case: Any) -> Array:
     if not has_table(case):
         return np.empty((0, 0))
     ends = tuple(SUPPORTS[case[f"support_{side}"]] for side in ("left", "right"))
-    return _table(tuple(_SPRINGS[end] for end in ends), int(case["nodes"]), struck_node(case))
+    nodes = int(case["nodes"])
+    struck = round(float(case["strike_position"]) * (nodes - 1))
+    return _table(tuple(_SPRINGS[end] for end in ends), nodes, struck)
 
 
 @functools.lru_cache(maxsize=16)
@@ -116,7 +120,9 @@ def wave_numbers(springs: Array, count: int) -> Array:
     value_before, value = (np.linalg.det(_conditions(springs, each)) for each in (before, b))
     for _ in range(_SECANTS):  # to the last digits, which the count of modes may lose
         change = value - value_before
-        step = np.where(change == 0.0, 0.0, value * (b - before) / np.where(change == 0.0, 1.0, change))
+        step = np.where(
+            change == 0.0, 0.0, value * (b - before) / np.where(change == 0.0, 1.0, change)
+        )
         before, value_before, b = b, value, b - step
         value = np.linalg.det(_conditions(springs, b))
     return np.concatenate([np.zeros(rigid), b])
@@ -188,7 +194,7 @@ def shapes(springs: Array, b: Array, places: Array) -> tuple[Array, Array]:
     factors = factors / np.sqrt(0.25 * (sums[:, 1] - sums[:, 0]))[:, np.newaxis, np.newaxis]
     basis = _basis(bent, places, 0)
     phi, waves = basis @ factors, basis[..., :2] @ factors[:, :2]
-    return tuple(np.concatenate([rigid, part[..., 0]]) for part in (phi, waves))
+    return np.concatenate([rigid, phi[..., 0]]), np.concatenate([rigid, waves[..., 0]])
 
 
 def _rigid_shapes(springs: Array, x: Array) -> Array:

@@ -103,7 +103,7 @@ class Beam:
         What holds each end: "pinned" (deflection and moment are zero; a roller is the same, without
         an axial force), "clamped" (deflection and slope are zero), or "free" (moment and shear
         force are zero). Others than pinned need the beam models "euler_bernoulli", "elastic" or
-        "timoshenko" and the scheme "leapfrog".
+        "timoshenko".
 
     Raises
     ------

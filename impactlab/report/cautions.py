@@ -118,7 +118,7 @@ def notes(runs: xr.Dataset) -> Iterator[str]:
         )
     if "modal" in used["scheme"]:
         yield (
-            "The modal scheme moves the beam in its sine modes and takes time steps of the "
+            "The modal scheme moves the beam in its modes and takes time steps of the "
             "time that a bar wave needs to cross one spacing. It converges to the same answers as "
             "leapfrog with far fewer nodes, except for the peak plastic strain of a perfectly "
             "plastic beam, which does not converge: do not compare it between schemes."

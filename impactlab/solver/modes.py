@@ -24,10 +24,10 @@ class Modes(NamedTuple):
     q: amplitude (m), by the deflection at the struck node. u: dt dq/dt half a step before (m). k2:
     the largest curvature per amplitude, k_p^2 of sines (1/m2). D: see modal.py. push:
     D/K (m/N). source (N): sum over the nodes of M_0 times the mode's curvature. Each (n + 1,).
-    bent: curvature of node i per amplitude, (last + 3, n + 1), 1/m2; nodes as in beam.py. seen: q when
-    all sections were last looked at, (n + 1,). near: the number of sections that could yield before
-    the next such look, then which they are, (last,). slack: what the curvature of any other may
-    have changed by until that look, and can have changed by now (1/m), (2,). cosine: of quarter
+    bent: curvature of node i per amplitude, (last + 3, n + 1), 1/m2; nodes as in beam.py. seen: q
+    when all sections were last looked at, (n + 1,). near: the number of sections that could yield
+    before the next such look, then which they are, (last,). slack: what the curvature of any other
+    may have changed by until that look, and can have changed by now (1/m), (2,). cosine: of quarter
     turns over n, (4 n,). leaps: see flight.py. table: that of model/beam_modes.py, (3 + 2 last - 2,
     n + 1); of sines without any entry.
     """

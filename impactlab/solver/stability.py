@@ -16,7 +16,8 @@ The modal scheme takes the time in which a bar wave crosses a spacing, for accur
 D (modal.py) and dt^2 times the contact's term above must not exceed 4 together; D is at most 2:
 dt <= sqrt(2/contact), where n modes and the sum of those left out count 4/3 + 7/(6 n) times
 1/(rho A dx) at most (docs/modal.md), n half the spacings; others than sines 0.07 more, and four
-times as much at a free end, where modes are twice as large. That is mostly far beyond, which few indentations show.
+times as much at a free end, where modes are twice as large. That is mostly far beyond, which few
+indentations show.
 
 A damper c of the contact (N s/m) counts as 4 c/dt beside k_c (contact_damping.py). With h, a half
 (modal: the whole) of c dt times what k_c is multiplied by, this makes the largest dt smaller by

@@ -22,6 +22,7 @@ from rich.table import Table
 
 import impactlab as il
 from impactlab.model.case_table import case_table
+from impactlab.model.section import fibre_table
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.kernels import kernel_of
@@ -62,7 +63,8 @@ def kernels(duration: float) -> Callable[[], object]:
     samples = np.zeros((RUNS, 5, 0))
     records = np.zeros(RUNS, CONTACT), np.zeros(RUNS, EVENTS)
     kernel = kernel_of(cases[0].beam_model, cases[0].scheme)
-    return lambda: kernel(cases, answers, *records, samples, *nothing)
+    tables = fibre_table(cases), np.empty((0, 0))
+    return lambda: kernel(cases, *tables, answers, *records, samples, *nothing)
 
 
 def library(duration: float) -> Callable[[], object]:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import cumulative_trapezoid, simpson
+from scipy.integrate import cumulative_trapezoid
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
@@ -29,69 +29,9 @@ from impactlab.solver.stability import discretise
 from impactlab.solver.state import State
 from impactlab.verification.solutions.bending import plastic_moment
 
+from ..end_modes import PAIRS, held, response_errors, rigid_shapes, roots
+
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
-
-PAIRS = list(itertools.product(SUPPORTS, SUPPORTS))
-IMPACT = replace(il.paper_impact(1.0, "hertz"), beam_model="elastic")
-
-
-def held(left, right, place, impact=IMPACT):
-    beam = replace(impact.beam, support_left=left, support_right=right)
-    return replace(impact, beam=beam, strike_position=place)
-
-
-def characteristic(left, right):
-    """(function of beta L whose roots are the modes, estimate of the n-th root).
-
-    Rayleigh's equations, divided by cosh, with free and clamped ends alike.
-    """
-    kinds = sorted("pinned" if end == "pinned" else end for end in (left, right))
-    if kinds == ["pinned", "pinned"]:
-        return np.sin, lambda n: n * np.pi
-    if "pinned" in kinds:
-        return lambda b: np.sin(b) - np.tanh(b) * np.cos(b), lambda n: (n + 0.25) * np.pi
-    sign = 1.0 if kinds == ["clamped", "free"] else -1.0
-    shift = -0.5 if sign > 0 else 0.5
-    return lambda b: np.cos(b) + sign / np.cosh(b), lambda n: (n + shift) * np.pi
-
-
-def roots(left, right, number):
-    function, near = characteristic(left, right)
-    return np.array(
-        [brentq(function, near(n) - 0.4, near(n) + 0.4, xtol=1e-13) for n in range(1, number + 1)]
-    )
-
-
-def basis(b, x, derivative):
-    """Four solutions of y'''' = b^4 y on (0, 1), of size one each: rows x, columns solutions."""
-    quarter = derivative * np.pi / 2
-    falling, rising = np.exp(-b * x), np.exp(-b * (1 - x))
-    columns = np.sin(b * x + quarter), np.cos(b * x + quarter), (-1) ** derivative * falling, rising
-    return np.stack(np.broadcast_arrays(*columns), axis=-1)
-
-
-CONDITIONS = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3)}
-
-
-def modes(left, right, number, x):
-    """(beta L, shapes on x, with unit mean square) of the bending modes."""
-    betas, shapes, fine = roots(left, right, number), [], np.linspace(0, 1, 8001)
-    for b in betas:
-        rows = [basis(b, 0.0, order) for order in CONDITIONS[left]]
-        rows += [basis(b, 1.0, order) for order in CONDITIONS[right]]
-        coefficients = np.linalg.svd(np.array(rows))[2][-1]
-        shape = basis(b, fine, 0) @ coefficients
-        shapes.append(basis(b, x, 0) @ coefficients / np.sqrt(simpson(shape**2, x=fine)))
-    return betas, np.array(shapes)
-
-
-def rigid_shapes(left, right, x):
-    """Shapes in which the beam moves without bending, with unit mean square."""
-    if (left, right) == ("free", "free"):
-        return [np.ones_like(x), np.sqrt(12) * (x - 0.5)]
-    if {left, right} == {"pinned", "free"}:
-        return [np.sqrt(3) * (x if left == "pinned" else 1 - x)]
-    return []
 
 
 def discrete_frequencies(left, right, nodes, struck):
@@ -212,36 +152,10 @@ def test_timoshenkos_frequencies_converge_at_second_order_to_the_exact_ones(left
     assert np.log2(errors[0] / errors[1]) == pytest.approx([2.0] * 4, abs=0.15)
 
 
-def modal_errors(left, right, place, nodes):
-    """Return errors of history and last shape, over the largest deflection, under the same force.
-
-    Every closed-form mode is integrated exactly under that force.
-    """
-    impact = held(left, right, place)
-    run = il.simulate(impact, il.Discretisation(nodes=nodes), duration=3e-3, samples=6001)
-    beam, t, x = impact.beam, run.time.values, run.x.values / impact.beam.span
-    force, mass = run.contact_force.values, beam.mass_per_length * beam.span
-    places = np.append(x, place)
-    betas, shapes = modes(left, right, 60, places)
-    speeds = betas**2 * np.sqrt(beam.bending_stiffness / (mass * beam.span**3))
-    turns = np.exp(-1j * np.outer(speeds, t))
-    sums = cumulative_trapezoid(force * turns, t, initial=0.0) / turns
-    amplitudes = sums.imag / (mass * speeds[:, np.newaxis])
-    twice = cumulative_trapezoid(cumulative_trapezoid(force, t, initial=0.0), t, initial=0.0)
-    for shape in rigid_shapes(left, right, places):
-        shapes, amplitudes = np.vstack([shapes, shape]), np.vstack([amplitudes, twice / mass])
-    amplitudes *= shapes[:, -1:]
-    history, profile = shapes[:, -1] @ amplitudes, amplitudes[:, -1] @ shapes[:, :-1]
-    size = np.abs(history).max()
-    assert size > 2e-5
-    errors = run.midspan_deflection.values - history, run.deflection.values - profile
-    return np.array([np.abs(error).max() for error in errors]) / size
-
-
 @pytest.mark.parametrize("place", [0.1, 0.3, 0.5])
 @pytest.mark.parametrize(("left", "right"), PAIRS)
 def test_the_elastic_response_converges_to_that_of_closed_form_modes(left, right, place):
-    coarse, fine = (modal_errors(left, right, place, nodes) for nodes in (101, 201))
+    coarse, fine = (response_errors(left, right, place, nodes) for nodes in (101, 201))
     assert (
         fine < np.maximum(0.28 * coarse, 1e-3)
     ).all()  # second order, down to the modes left out
@@ -389,10 +303,6 @@ STRIP = {"beam_model": "timoshenko", "contact_compliance": "strip"}
             r"^strike_position = 0\.33: .* take 0\.325 or 0\.35, or 101 nodes$",
         ),
         ({"strike_position": 0.0}, r"^Impact\.strike_position = 0\.0: must be a share"),
-        (
-            {"support_left": "clamped", "scheme": "modal"},
-            r"^scheme = 'modal': must be leapfrog with",
-        ),
         (
             {"support_right": "free", "beam_model": "spring_mass"},
             r"^Impact\.beam_model = 'spring_mass': must be",

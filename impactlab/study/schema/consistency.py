@@ -174,7 +174,7 @@ def _impacts(file: StudyFile) -> Reasons:
             "has leapfrog alone: set scheme: leapfrog, or take out the beam model"
         )
         yield key_of("scheme", sampling), reason
-    yield from _other_beams(file, set(models), schemes)
+    yield from _other_beams(file, set(models))
     lumped = [name for name in LUMPED_MODELS if name in models]
     if lumped and "contact_patch" in values_of(sampling, "load", file.impact.load):
         reason = f"contact_patch is not for {lumped[0]}, which moves as one mass: set load: point"
@@ -186,8 +186,8 @@ def _impacts(file: StudyFile) -> Reasons:
             yield key_of(name, sampling), f"{ours[0]} {TIMOSHENKO_ALONE}"
 
 
-def _other_beams(file: StudyFile, models: set[Value], schemes: set[Value]) -> Reasons:
-    """Check that other ends and places have a model and a scheme, and that a node is struck."""
+def _other_beams(file: StudyFile, models: set[Value]) -> Reasons:
+    """Check that other ends and places have a model, and that a node is struck."""
     sampling, beam, grid = file.sampling, file.impact.beam, file.discretisation[0]
     places = values_of(sampling, "strike_position", file.impact.strike_position)
     key = key_of("strike_position", sampling)
