@@ -52,7 +52,7 @@ napoleon_type_aliases = {
         "Estimate": "study.estimate",
         "Problem": "study.errors",
         "Quantity": "model.quantities",
-        "Rectangle": "model.section",
+        "Section": "model.cross_section",
         "Status": "study.runs",
         "Surrogate": "analysis.surrogate.stored",
     }.items()

@@ -18,7 +18,7 @@ from impactlab.model.case_table import case_table
 from impactlab.model.checks import instance, integer, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
-from impactlab.model.parameters import PARAMETERS, flatten
+from impactlab.model.parameters import PARAMETERS, fixed_values, flatten
 from impactlab.model.plausibility import (
     ImplausibleWarning,
     TooShortWarning,
@@ -27,7 +27,7 @@ from impactlab.model.plausibility import (
 )
 from impactlab.model.quantities import Quantity, as_text, in_si
 from impactlab.model.quantities import duration as duration_of
-from impactlab.model.section import fibre_table, integration_rule
+from impactlab.model.section import fibre_table
 from impactlab.solver import BEAM_MODELS, BENDING_MODELS, SCHEMES
 from impactlab.solver.contact.history import CONTACT, make_pair
 from impactlab.solver.event_tracker import EVENTS
@@ -143,6 +143,7 @@ def run_dataset(
     axes |= profile_coordinates(impact, grid)
     variables = answer_variables(answers, tuple(RESPONSES), ())
     fixed = flatten(impact, grid) | {"sphere_mass": impact.sphere.total_mass, "duration": duration}
+    fixed["shear_coefficient"] = impact.beam.shear_correction
     blank = _blank_run(
         tuple(variables),
         tuple((name, values.tobytes()) for name, values in axes.items()),
@@ -266,7 +267,8 @@ def simulate_many(
     _warn(numbers(impact, grid) | ends)
     answers = {name: values.reshape(shape) for name, values in solve(cases).items()}
     _warn_too_short(cases, answers["status"])
-    fixed = flatten(impact, grid.resolved(map(str, lists.get("beam_model", [impact.beam_model]))))
+    resolved = grid.resolved(map(str, lists.get("beam_model", [impact.beam_model])))
+    fixed = fixed_values(impact, resolved, lists)
     if not {"sphere_radius", "sphere_density"} & lists.keys():
         fixed["sphere_mass"] = impact.sphere.total_mass
     paired = combine == "paired"
@@ -414,7 +416,7 @@ def compile_kernels(
 def profile_coordinates(impact: Impact, discretisation: Discretisation) -> dict[str, Any]:
     """Return the `x` and `z` coordinates (m) of fields along the beam."""
     beam = impact.beam
-    z, _ = beam.section.fibres(*integration_rule(discretisation.rule, discretisation.points))
+    z, _ = beam.section.cut(discretisation.rule, discretisation.points)
     return {"x": np.linspace(0.0, beam.span, discretisation.nodes), "z": z}
 
 

@@ -117,6 +117,16 @@ WARNINGS: dict[str, tuple[int, str]] = {
         "the strike lies within a beam depth of an end, where the body under the contact is "
         "no half-space and the section no beam",
     ),
+    "wall_may_dent": (
+        outputs.WALL_MAY_DENT,
+        "the section has a wall or a flange that dents and bends under the sphere, which the beam "
+        "model does not: forces are too large, contacts too short, the more so the thinner it is",
+    ),
+    "round_top": (
+        outputs.ROUND_TOP,
+        "the beam is round where the sphere strikes, and the contact law is that of a flat top: "
+        "the contact is too stiff",
+    ),
 }
 """Warnings on available responses, by name: (bit in `remarks`, in words)."""
 OUTSIDE_DATA = sum(bit for name, (bit, _) in WARNINGS.items() if name.endswith("outside_data"))

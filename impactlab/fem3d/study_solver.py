@@ -32,7 +32,7 @@ from impactlab.model.case_table import case_table
 from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact, paper_impact
+from impactlab.model.impact import OTHER_SECTION, Impact, paper_impact
 from impactlab.model.parameters import with_values
 from impactlab.simulate import solve as solve_cases
 from impactlab.solver import BEAM_MODELS
@@ -78,6 +78,8 @@ def table(
     solid = np.broadcast_to(models == SOLID, records.shape)
     if not solid.any():
         return records
+    if records["beam_shape"][solid].any():
+        raise ValueError(f"beam_model = {SOLID!r}: must be another one {OTHER_SECTION}")
     records["beam_model"][solid] = SOLID_MODEL
     for name in _BEAM_MODELS_ONLY:
         records[name][solid] = 0

@@ -14,6 +14,7 @@ from impactlab.model.contact_compliance import case_fields
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, Impact
 from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
+from impactlab.model.section import THICKNESSES
 from impactlab.solver import (
     BEAM_MODELS,
     BENDING_MODELS,
@@ -128,6 +129,7 @@ def _table(
     discretisation = discretisation.resolved(np.unique(impact.beam_model).tolist())
     values: dict[str, Any] = {**flatten(impact, discretisation), "duration": duration}
     values["sphere_mass"] = impact.sphere.total_mass
+    values = dict.fromkeys((f"beam_{name}" for name in THICKNESSES), 0.0) | values
     for name, entry in PARAMETERS.items():
         if entry.choices:
             numbered = enumerate(entry.choices)
@@ -144,8 +146,10 @@ def _section_fields(beam: Beam) -> dict[str, Any]:
     section, metal = beam.section, beam.material
     shear_modulus = 0.5 * metal.youngs_modulus / (1.0 + metal.poissons_ratio)
     return {
+        "shear_coefficient": beam.shear_correction,
         "mass_per_length": beam.mass_per_length,
         "rotary_inertia": section.rotary_inertia(metal.density),
-        "shear_stiffness": beam.shear_coefficient * shear_modulus * section.area,
+        "shear_stiffness": beam.shear_correction * shear_modulus * section.area,
         "stress_per_moment": section.stress_per_moment,
+        "plastic_modulus": section.plastic_modulus,
     }

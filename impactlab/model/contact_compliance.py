@@ -40,7 +40,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from impactlab.model.impact import OTHER_BEAM, Impact, is_plain
+from impactlab.model.impact import OTHER_BEAM, OTHER_SECTION, Impact, is_plain
+from impactlab.model.shapes import Rectangle
 from impactlab.types import Floats
 
 DEPTHS = (0.2, 0.3, 0.45, 0.7, 1.0, 1.5, 2.5, 4.0)
@@ -266,6 +267,9 @@ def _within_table(impact: Impact, applies: np.ndarray[Any, Any], refused: str) -
     beam = impact.beam
     if np.any(applies & np.not_equal(impact.beam_model, "timoshenko")):
         raise ValueError(f"{refused}{TIMOSHENKO_ALONE}")
+    if np.any(applies & np.not_equal(beam.shape, "rectangle")):
+        default = TIMOSHENKO_OPTIONS[refused.split(" = ")[0].split(".")[1]]
+        raise ValueError(f"{refused}must be {default} {OTHER_SECTION}")
     shape = np.asarray(beam.depth / beam.width)
     if np.any(applies & ((shape < DEPTHS[0]) | (shape > DEPTHS[-1]))):
         raise ValueError(
@@ -297,7 +301,7 @@ def _of_beam(impact: Impact, force: Floats, moment: Floats) -> tuple[Floats, Flo
     """Return c (m/N) and gamma (m2) of the beam from two tables."""
     beam, nu = impact.beam, np.asarray(impact.beam.material.poissons_ratio)
     c, g = (_from_table(impact, table) for table in (force, moment))
-    shear = (1.0 / beam.shear_coefficient - 6.0 / 5.0) * (1.0 + nu) / 6.0
+    shear = (1.0 / beam.shear_correction - 6.0 / 5.0) * (1.0 + nu) / 6.0
     c = c / (beam.material.youngs_modulus * beam.depth)
     return c, (g - shear) * beam.depth * beam.depth
 
@@ -320,7 +324,7 @@ def _strip(impact: Impact) -> Strip:
     """Return the constants of the beam as a strip, of an impact or of many."""
     beam, nu = impact.beam, np.asarray(impact.beam.material.poissons_ratio)
     square, along = beam.width * beam.width, beam.bending_stiffness
-    plate = beam.section.plate_stiffness(beam.material.youngs_modulus, nu)
+    plate = Rectangle(beam.width, beam.depth).plate_stiffness(beam.material.youngs_modulus, nu)
     stiffness = plate * _from_table(impact, STRIP_STIFFNESS)
     usual = FREE_STRIP * beam.mass_per_length * square * square / 720.0
     inertia = usual * _from_table(impact, STRIP_INERTIA)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from impactlab.model.section import section_of
+from impactlab.model.shapes import Rectangle
 from impactlab.solver import BEAM_MODELS, SCHEMES, SUPPORTS
 
 A_SECOND = 3e8
@@ -33,9 +33,10 @@ def node_steps(cases: Any) -> Any:
 
     cases: a record of solver.types.CASE, or an array of them. Their largest step is that of bending
     for the paper's beam by leapfrog, a bar wave's over a spacing for the modal scheme, and half of
-    it, roughly, for the other models of the beam.
+    it, roughly, for the other models of the beam. Any section counts as the rectangle around it.
     """
-    dx, section = cases["beam_span"] / (cases["nodes"] - 1), section_of(cases)
+    dx = cases["beam_span"] / (cases["nodes"] - 1)
+    section = Rectangle(cases["beam_width"], cases["beam_depth"])
     wave = dx * np.sqrt(cases["beam_density"] / cases["beam_youngs_modulus"])
     bending = 0.5 * wave * dx * np.sqrt(section.area / section.second_moment)
     bends = cases["beam_model"] <= BEAM_MODELS.index("elastic")
@@ -68,7 +69,7 @@ def work(cases: Any) -> Any:
     hertz, indentation = _hertz(cases)
     stiffness = 1.5 * hertz * np.sqrt(np.minimum(indentation, radius))
     dx = cases["beam_span"] / (nodes - 1)
-    node = section_of(cases).mass_per_length(cases["beam_density"]) * dx
+    node = cases["mass_per_length"] * dx
     # the largest step of the sphere, and of the beam's middle node if any, on that spring
     step = 2.0 / np.sqrt(stiffness * (1.0 / mass + np.where(lumped, 0.0, 1.0 / node)))
     contact = cases["duration"] / (cases["courant"] * step)
@@ -102,13 +103,13 @@ def swing(cases: Any) -> Any:
     squares add up to a longer one than theirs together), and the time in which a plastic hinge
     under the sphere stops it. A rigid beam does not swing; one that flies counts as pinned.
     """
-    span, section = cases["beam_span"], section_of(cases)
+    span, metal = cases["beam_span"], cases["beam_youngs_modulus"] / cases["beam_density"]
     flexibility, lever = _statics(cases)
-    stiffness = section.bending_stiffness(cases["beam_youngs_modulus"]) / span**3
-    beam = section.mass_per_length(cases["beam_density"]) * span
+    stiffness = metal * cases["rotary_inertia"] / span**3
+    beam = cases["mass_per_length"] * span
     first = _FIRST[cases["support_left"], cases["support_right"]]
     yields = cases["beam_model"] != BEAM_MODELS.index("elastic")
-    collapse = cases["beam_yield_stress"] * section.plastic_modulus / (lever * span)
+    collapse = cases["beam_yield_stress"] * cases["plastic_modulus"] / (lever * span)
     hinge = yields * cases["sphere_mass"] * cases["velocity"] / collapse
     period = 2.0 * np.pi * np.sqrt((cases["sphere_mass"] * flexibility + beam / first) / stiffness)
     return np.where(cases["beam_model"] == BEAM_MODELS.index("rigid"), 0.0, period + hinge)

@@ -14,9 +14,10 @@ import numpy as np
 
 from impactlab import wings
 from impactlab.model.checks import instance, number, one_of, positive, require
+from impactlab.model.cross_section import Section
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI, Quantity, engineering
-from impactlab.model.section import SHAPES, Rectangle
+from impactlab.model.section import SHAPES, check_section, section_fields
 from impactlab.solver import BEAM_MODELS, COMPLIANCES, LOADS, PRESTRESSES, SUPPORTS, WAVE_MODELS
 from impactlab.solver.contact import LAWS
 
@@ -29,6 +30,8 @@ OTHER_BEAM = (
     "pinned, support_right: pinned and strike_position: 0.5"
 )
 """Ends of messages on what other beams cannot have."""
+OTHER_SECTION = "with a section that is no rectangle: change it, or set shape: rectangle"
+"""The same, of other sections."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,10 +98,15 @@ class Beam:
         Side of the section, across and along the velocity, in m.
     material : Material
         Metal of the beam.
-    shear_coefficient : Quantity, default 5/6
-        Shear force over G A times the shear angle, of Timoshenko's beam alone.
-    shape : {"rectangle"}, default "rectangle"
-        Shape of the section.
+    shear_coefficient : Quantity, optional
+        Shear force over G A times the shear angle, of Timoshenko's beam alone; by default that of
+        the shape: 5/6 of a rectangle, Cowper's of the others (model/shapes.py).
+    shape : {"rectangle", "box", "tube", "circle", "i"}, default "rectangle"
+        Shape of the section. Tubes and circles are round: their width and depth are the diameter.
+    wall_thickness : Quantity, optional
+        Thickness of the wall of a box or a tube, in m; these need it, and other shapes have none.
+    flange_thickness, web_thickness : Quantity, optional
+        Thickness of each flange, and of the web, of an I-section, in m; it needs both.
     support_left, support_right : {"pinned", "clamped", "free"}, default "pinned"
         What holds each end: "pinned" (deflection and moment are zero; a roller is the same, without
         an axial force), "clamped" (deflection and slope are zero), or "free" (moment and shear
@@ -109,7 +117,8 @@ class Beam:
     ------
     ValueError
         If a length is not finite and positive, the depth not below the span, the shear coefficient
-        not in (0, 1], shape or a support unknown, or the material is not a `Material`.
+        not in (0, 1], shape or a support unknown, or the material is not a `Material`; if a shape
+        lacks a thickness, cannot have it, or is round and not as wide as deep.
 
     Examples
     --------
@@ -122,8 +131,11 @@ class Beam:
     width: SI[float] = SI("m")
     depth: SI[float] = SI("m")
     material: Material
-    shear_coefficient: SI[float] = SI("1", Rectangle.shear_coefficient(0.3))
+    shear_coefficient: SI[float | None] = SI("1", None)
     shape: str = "rectangle"
+    wall_thickness: SI[float | None] = SI("m", None)
+    flange_thickness: SI[float | None] = SI("m", None)
+    web_thickness: SI[float | None] = SI("m", None)
     support_left: str = "pinned"
     support_right: str = "pinned"
 
@@ -133,23 +145,39 @@ class Beam:
             positive("Beam", field, getattr(self, field))
         below = f"must be below the span ({self.span!r} m)"
         require(self.depth < self.span, "Beam", "depth", self.depth, below)
-        k = positive("Beam", "shear_coefficient", self.shear_coefficient)
-        message = "must be in (0, 1]; 5/6 holds for a rectangle"
-        require(k <= 1, "Beam", "shear_coefficient", self.shear_coefficient, message)
-        one_of("Beam", "shape", self.shape, tuple(SHAPES))
+        if self.shear_coefficient is not None:
+            k = positive("Beam", "shear_coefficient", self.shear_coefficient)
+            message = "must be in (0, 1]; 5/6 holds for a rectangle"
+            require(k <= 1, "Beam", "shear_coefficient", self.shear_coefficient, message)
+        check_section(self)
         one_of("Beam", "support_left", self.support_left, SUPPORTS)
         one_of("Beam", "support_right", self.support_right, SUPPORTS)
 
     @property
-    def section(self) -> Rectangle:
+    def section(self) -> Section:
         """Section of the beam, which knows its area, second moment and fibres.
 
         Returns
         -------
-        Rectangle
-            The section (model/section.py).
+        Section
+            The section (model/section.py, model/shapes.py).
         """
-        return SHAPES[self.shape](self.width, self.depth)
+        sizes = {field: getattr(self, field) for field in section_fields(self.shape)}
+        return SHAPES[self.shape](**sizes)
+
+    @property
+    def shear_correction(self) -> float:
+        """Shear coefficient: the stated one, else that of the shape.
+
+        Returns
+        -------
+        float
+            k, of 1.
+        """
+        if self.shear_coefficient is not None:
+            return self.shear_coefficient
+        k: float = self.section.shear_coefficient(self.material.poissons_ratio)
+        return k
 
     @property
     def mass_per_length(self) -> float:
@@ -260,6 +288,9 @@ class Impact:
         moves = np.isin(self.beam_model, WAVE_MODELS)
         message = f"must be {' or '.join(WAVE_MODELS)} {OTHER_BEAM}"
         require(moves | is_plain(self), "Impact", "beam_model", self.beam_model, message)
+        message = f"must be {' or '.join(BEAM_MODELS)} {OTHER_SECTION}"
+        sound = np.isin(self.beam_model, BEAM_MODELS) | np.equal(beam.shape, "rectangle")
+        require(sound, "Impact", "beam_model", self.beam_model, message)
 
     def _repr_html_(self) -> str:
         """Return a table of all parameters for notebooks, with units."""

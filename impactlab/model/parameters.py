@@ -6,7 +6,7 @@ table alike, so that a parameter is spelled in one way everywhere.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Any, NamedTuple
@@ -17,7 +17,7 @@ from impactlab import wings
 from impactlab.model.checks import Column, did_you_mean
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import MODELS, Impact
-from impactlab.solver import COMPLIANCES, LOADS, PRESTRESSES, RULES, SCHEMES, SUPPORTS
+from impactlab.solver import COMPLIANCES, LOADS, PRESTRESSES, RULES, SCHEMES, SHAPES, SUPPORTS
 from impactlab.solver.contact import LAWS
 
 Value = float | int | str
@@ -74,6 +74,15 @@ _ROWS = (
     ("beam_span", "m", "span of the beam", "impact.beam.span"),
     ("beam_width", "m", "width of the beam", "impact.beam.width"),
     ("beam_depth", "m", "depth of the beam", "impact.beam.depth"),
+    ("beam_shape", "1", "shape of the section", "impact.beam.shape"),
+    *(
+        (f"beam_{part}_thickness", "m", text, f"impact.beam.{part}_thickness")
+        for part, text in (
+            ("wall", "wall thickness of the beam"),
+            ("flange", "flange thickness of the beam"),
+            ("web", "web thickness of the beam"),
+        )
+    ),
     ("shear_coefficient", "1", "shear coefficient of the beam", "impact.beam.shear_coefficient"),
     *(
         (f"beam_{field}", units, f"{text} of the beam", f"impact.beam.material.{field}")
@@ -94,6 +103,7 @@ _CHOICES = {
     "contact_prestress": PRESTRESSES,
     "support_left": SUPPORTS,
     "support_right": SUPPORTS,
+    "beam_shape": SHAPES,
     "rule": RULES,
     "scheme": SCHEMES,
 }
@@ -135,13 +145,26 @@ REFINEMENTS = {
 
 
 def flatten(impact: Impact, discretisation: Discretisation) -> dict[str, Value]:
-    """Return every parameter's value by name, without those that are None (mass, element size)."""
+    """Return every parameter's value by name, without those that are None (as mass may be)."""
     roots: dict[str, Any] = {"impact": impact, "discretisation": discretisation}
     values = {
         name: reduce(getattr, entry.path[1:], roots[entry.path[0]])
         for name, entry in PARAMETERS.items()
     }
     return {name: value for name, value in values.items() if value is not None}
+
+
+def fixed_values(
+    impact: Impact, discretisation: Discretisation, varied: Container[str]
+) -> dict[str, Value]:
+    """Return the values that all runs have, beside what is varied, by name of the parameter.
+
+    Among them the shear coefficient of rectangles, which is a number of its own of other shapes.
+    """
+    values, beam = flatten(impact, discretisation), impact.beam
+    if beam.shape == "rectangle" and "beam_shape" not in varied:
+        values["shear_coefficient"] = beam.shear_correction
+    return values
 
 
 def with_values(

@@ -16,6 +16,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.model.quantities import misread
+from impactlab.model.section import THICKNESSES
 
 LIGHT = 299_792_458.0
 """Speed of light, m/s."""
@@ -74,6 +75,10 @@ _LIMITS = {
     "sphere_radius": (1e-9, 1e-6, 10.0, inf, "m", "atoms are 1e-10 m wide"),
     "beam_depth": (1e-9, 1e-6, 10.0, inf, "m", "atoms are 1e-10 m wide"),
     "beam_width": (1e-9, 1e-6, 100.0, inf, "m", "atoms are 1e-10 m wide"),
+    **{
+        f"beam_{field}": (1e-9, 1e-6, 1.0, inf, "m", "atoms are 1e-10 m wide")
+        for field in THICKNESSES
+    },
 }
 """By parameter: the least possible value, the ends of what is plausible, the largest possible
 value; units and reason."""

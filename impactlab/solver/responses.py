@@ -36,13 +36,15 @@ from impactlab.solver.outputs import (
     INDENTATION_STILL_GROWING,
     OUTSIDE_CONTACT_LAW,
     POISSONS_RATIO_OUTSIDE_DATA,
+    ROUND_TOP,
     SPHERE_NOT_LEAVING,
     SPHERE_YIELD_OUTSIDE_DATA,
     STIFFNESS_RATIO_OUTSIDE_DATA,
     STRUCK_NEAR_END,
+    WALL_MAY_DENT,
     YIELD_RATIO_OUTSIDE_DATA,
 )
-from impactlab.solver.types import Array, Record
+from impactlab.solver.types import CIRCLE, RECTANGLE, TUBE, Array, Record
 
 PLASTIC_ZONE_STRAIN = 1e-5
 """PEEQ from which on a section counts as plastic."""
@@ -93,12 +95,14 @@ def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) ->
 def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> None:
     """Remark which inputs lie outside the data of the law finite_element and of the corrections.
 
-    Also a strike so near an end that the body under the contact is no half-space.
+    Also a strike so near an end that the body under the contact is no half-space, and a section
+    that is none.
 
     Those of materials count where the contact yields, with the law, a strip or prestress.
     """
     if min(case.strike_position, 1.0 - case.strike_position) * case.beam_span < case.beam_depth:
         answer.remarks |= STRUCK_NEAR_END
+    read_shape(answer, case.beam_shape)
     S_y = yield_stress(contact, pair)
     corrected = case.contact_prestress > 0 or case.width_inertia > 0.0
     if corrected or pair.compliance != 0.0:
@@ -122,6 +126,15 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
     stiffness = case.sphere_youngs_modulus / case.beam_youngs_modulus
     if not LEAST_STIFFNESS <= stiffness <= LARGEST_STIFFNESS:
         answer.remarks |= STIFFNESS_RATIO_OUTSIDE_DATA
+
+
+@compiled
+def read_shape(answer: Record, shape: int) -> None:
+    """Remark what the beam lacks under the sphere; shape: its number."""
+    if shape not in (RECTANGLE, CIRCLE):
+        answer.remarks |= WALL_MAY_DENT
+    if shape in (CIRCLE, TUBE):
+        answer.remarks |= ROUND_TOP
 
 
 @compiled

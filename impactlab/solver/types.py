@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from impactlab.solver import BEAM_MODELS, LOADS, SCHEMES
+from impactlab.solver import BEAM_MODELS, LOADS, SCHEMES, SHAPES
 
 Array = np.ndarray[Any, Any]
 """An array; the docstring gives shape and unit."""
@@ -27,6 +27,9 @@ TIMOSHENKO = BEAM_MODELS.index("timoshenko")
 SPRING_MASS = BEAM_MODELS.index("spring_mass")
 RIGID = BEAM_MODELS.index("rigid")
 MODAL = SCHEMES.index("modal")
+RECTANGLE = SHAPES.index("rectangle")
+CIRCLE = SHAPES.index("circle")
+TUBE = SHAPES.index("tube")
 CONTACT_PATCH = LOADS.index("contact_patch")
 
 
@@ -40,8 +43,9 @@ CASE = record(
     """
     duration velocity gravity sphere_radius sphere_mass
     sphere_density sphere_youngs_modulus sphere_poissons_ratio sphere_yield_stress
-    beam_span beam_width beam_depth shear_coefficient
-    mass_per_length rotary_inertia shear_stiffness stress_per_moment
+    beam_span beam_width beam_depth beam_wall_thickness beam_flange_thickness beam_web_thickness
+    shear_coefficient
+    mass_per_length rotary_inertia shear_stiffness stress_per_moment plastic_modulus
     beam_density beam_youngs_modulus beam_poissons_ratio beam_yield_stress
     beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus
     beam_rate_coefficient beam_rate_exponent beam_rate_sensitivity beam_reference_rate courant
@@ -49,14 +53,16 @@ CASE = record(
     compliance bending_compliance stress_along stress_across
     width_stiffness width_inertia width_lever width_twist axis_compliance axis_bending
     """,
-    integers="contact beam_model load contact_prestress support_left support_right nodes points"
-    " rule scheme",
+    integers="contact beam_model load contact_prestress support_left support_right"
+    " beam_shape nodes points rule scheme",
 )
 """Record type of the case table: one record per run, everything the kernels need to know of it.
 
 The fields are the parameters of model/parameters.py, in SI, with contact law, beam model, load,
-supports, rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS, SUPPORTS,
-RULES and SCHEMES) and the sphere's mass resolved; the duration in s; and what follows from them: of
-the section (model/section.py) rho A, rho I, k G A and the stress in the outermost fibre over
-the bending moment, and of contact and strip those of model/contact_compliance.py.
+supports, shape, rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS,
+SUPPORTS, SHAPES, RULES and SCHEMES), the sphere's mass and the shear coefficient resolved, and
+thicknesses that the shape does not have as 0; the duration in s; and what follows from them: of
+the section (model/section.py) rho A, rho I, k G A, the stress in the outermost fibre over the
+bending moment and the plastic modulus, and of contact and strip those of
+model/contact_compliance.py.
 """

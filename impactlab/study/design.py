@@ -15,7 +15,7 @@ import xarray as xr
 from impactlab.methods.grid import Grid
 from impactlab.methods.runs import listed
 from impactlab.methods.sobol import Sobol
-from impactlab.model.parameters import flatten, with_values
+from impactlab.model.parameters import fixed_values, with_values
 from impactlab.study.schema.consistency import further_models
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy, ImpactStudy
 from impactlab.study.schema.readers import study_of_text
@@ -51,7 +51,7 @@ def design(study: AnyStudy, start: int = 0, stop: int | None = None) -> xr.Datas
             reason = "is auto: find it before the runs are drawn (impactlab design)"
             raise StudyError(Problem(str(study.path), "discretisation", reason))
         base = with_values(study.impact, study.discretisation, sampling.fixed)
-        fixed = flatten(*base) | {"duration": study.duration}
+        fixed = fixed_values(*base, sampling.varied) | {"duration": study.duration}
         settings = {
             "solver": next((model.solver for model in further_models(study)), "impact"),
             "histories": int(study.store.histories),

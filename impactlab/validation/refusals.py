@@ -12,6 +12,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, Parameter, Value, with_values
 from impactlab.model.plausibility import without_unit
+from impactlab.model.section import SHAPES, THICKNESSES, section_fields
 
 Base = tuple[Impact, Discretisation]
 
@@ -72,9 +73,22 @@ def check_alone(parameter: Parameter, value: Value) -> Value:
 
     A parameter of a test function, which is no part of the model, can have any value.
     """
-    if parameter.path and (refused := refusal(_ROOMY, {parameter.name: value})):
+    values = {parameter.name: value} | _section_around(parameter.name, value)
+    if parameter.path and (refused := refusal(_ROOMY, values)):
         raise ValueError(refused.reason)
     return value
+
+
+def _section_around(name: str, value: Value) -> dict[str, Value]:
+    """Return the sizes with which a shape, or a thickness, makes a section; none for others."""
+    shape = {"beam_wall_thickness": "box", "beam_flange_thickness": "i", "beam_web_thickness": "i"}
+    shape["beam_shape"] = str(value)
+    if shape.get(name) not in SHAPES or shape[name] == "rectangle":
+        return {}
+    sizes: dict[str, Value] = dict.fromkeys(("beam_width", "beam_depth"), 1e299)
+    thin = (f"beam_{field}" for field in section_fields(shape[name]) if field in THICKNESSES)
+    sizes |= dict.fromkeys(thin, 1e-300) | {"beam_shape": shape[name]}
+    return {field: size for field, size in sizes.items() if field != name}
 
 
 _ROOMY: Base = with_values(

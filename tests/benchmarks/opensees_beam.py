@@ -11,7 +11,7 @@ import numpy as np
 import openseespy.opensees as ops
 
 import impactlab as il
-from impactlab.model.section import integration_rule
+from impactlab.model.integration import integration_rule
 
 POINTS = 9
 

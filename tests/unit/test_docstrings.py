@@ -15,7 +15,7 @@ RETURNED = {
     "Animation": "impactlab.figures.animation",
     "Estimate": "impactlab.study.estimate",
     "Problem": "impactlab.validation.errors",
-    "Rectangle": "impactlab.model.section",
+    "Section": "impactlab.model.cross_section",
     "Status": "impactlab.study.inventory",
     "Surrogate": "impactlab.analysis.surrogate.stored",
 }

@@ -122,7 +122,8 @@ IMPACT_PARAMETERS = [
     for name, entry in PARAMETERS.items()
     if entry.path[0] == "impact"
     and name not in ("contact", *TIMOSHENKO_OPTIONS, "beam_model", "load", "shear_coefficient")
-    and name not in ("strike_position", "support_left", "support_right")
+    and name not in ("strike_position", "support_left", "support_right", "beam_shape")
+    and not name.endswith("thickness")
 ]
 """Parameters of an impact, without those of the beam models alone."""
 

@@ -135,8 +135,9 @@ def plane_faces(
 
 
 def _refuse_other_beams(impact: Impact) -> None:
-    """Raise ValueError unless both planes of symmetry are the impact's, and its ends pinned."""
+    """Raise ValueError unless the beam is a pinned rectangular one with both planes of symmetry."""
     for owner, field, plain in (
+        (impact.beam, "shape", "rectangle"),
         (impact.beam, "support_left", "pinned"),
         (impact.beam, "support_right", "pinned"),
         (impact, "strike_position", MID_SPAN),
@@ -144,7 +145,7 @@ def _refuse_other_beams(impact: Impact) -> None:
         if (value := getattr(owner, field)) != plain:
             raise ValueError(
                 f"{type(owner).__name__}.{field} = {value!r}: the 3-D model is a quarter of a "
-                f"pinned beam struck at mid-span: set it to {plain!r}"
+                f"rectangular pinned beam struck at mid-span: set it to {plain!r}"
             )
 
 

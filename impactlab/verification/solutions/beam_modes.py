@@ -170,7 +170,7 @@ def strip_odd_modes(beam: Beam, count: int, across: Sequence[float]) -> BeamMode
 def shear_stiffness(beam: Beam) -> float:
     """Return k G A in N, k the shear coefficient, G = E/(2 (1 + nu))."""
     modulus = beam.material.youngs_modulus / (2.0 * (1.0 + beam.material.poissons_ratio))
-    return float(beam.shear_coefficient * modulus * beam.section.area)
+    return float(beam.shear_correction * modulus * beam.section.area)
 
 
 def shear_deflection(beam: Beam, load: float) -> float:

@@ -4,7 +4,7 @@ import pytest
 
 from impactlab.fem3d.wing import SIZES
 from impactlab.model.parameters import PARAMETERS
-from impactlab.solver import BEAM_MODELS, LOADS, RULES, SCHEMES, SUPPORTS
+from impactlab.solver import BEAM_MODELS, LOADS, RULES, SCHEMES, SHAPES, SUPPORTS
 from impactlab.solver.contact import LAWS
 from impactlab.solver.types import CASE
 
@@ -12,11 +12,13 @@ OF_KERNELS = {
     name: entry for name, entry in PARAMETERS.items() if name not in (*SIZES, "contact_compliance")
 }
 """Without those of the 3-D model alone, and that which becomes eight numbers."""
+THICKNESSES = [name for name in PARAMETERS if name.endswith("thickness")]
 OF_SECTION = {
     "mass_per_length": lambda rho, E, nu, B, H, k: rho * B * H,
     "rotary_inertia": lambda rho, E, nu, B, H, k: rho * B * H**3 / 12,
     "shear_stiffness": lambda rho, E, nu, B, H, k: k * E / (2 + 2 * nu) * B * H,
     "stress_per_moment": lambda rho, E, nu, B, H, k: 6 / (B * H**2),
+    "plastic_modulus": lambda rho, E, nu, B, H, k: B * H**2 / 4,
 }
 DERIVED = (
     *("compliance", "bending_compliance", "axis_compliance", "axis_bending"),
@@ -36,6 +38,7 @@ def test_a_record_has_every_value_in_its_place(make_case):
         name: 0.5 + number / 100
         for number, (name, entry) in enumerate(OF_KERNELS.items())
         if not entry.choices and not entry.is_integer and "poisson" not in name
+        if name not in THICKNESSES
     }
     ratios = {"sphere_poissons_ratio": 0.1, "beam_poissons_ratio": 0.2}
     moduli = {"sphere_youngs_modulus": 1e9, "beam_youngs_modulus": 2e9, "beam_span": 9.0}
@@ -49,10 +52,12 @@ def test_a_record_has_every_value_in_its_place(make_case):
         "contact_prestress": 0,
         "rule": RULES.index("layers"),
         "scheme": SCHEMES.index("leapfrog"),
+        "beam_shape": SHAPES.index("rectangle"),
         "support_left": SUPPORTS.index("clamped"),
         "support_right": SUPPORTS.index("free"),
     }
-    expected = values | numbers_of_names | {"duration": 0.7} | dict.fromkeys(DERIVED, 0.0)
+    expected = values | numbers_of_names | {"duration": 0.7}
+    expected |= dict.fromkeys((*DERIVED, *THICKNESSES), 0.0)
     assert {name: case[name] for name in CASE.names if name not in OF_SECTION} == expected
     beam = [values[f"beam_{name}"] for name in ("density", "youngs_modulus", "poissons_ratio")]
     sizes = [values[name] for name in ("beam_width", "beam_depth", "shear_coefficient")]

@@ -162,9 +162,17 @@ def test_ranges(read, grid, name, given, values):
 
 def test_every_parameter_can_be_varied(read, grid):
     values = flatten(paper_impact(), Discretisation()) | {"sphere_mass": 1.4}
+    values |= {"shear_coefficient": 0.8, "beam_shape": "tube", "beam_wall_thickness": 0.003}
+    values |= {"beam_flange_thickness": 0.003, "beam_web_thickness": 0.003}
     assert values.keys() == PARAMETERS.keys() - {*SIZES}  # see test_solid
+    square = {"shape": "box", "width": 0.0278, "wall_thickness": "4 mm"}
+    i = {"shape": "i", "flange_thickness": "4 mm", "web_thickness": "4 mm"}
+    beams = {"beam_shape": square, "beam_wall_thickness": square}
+    beams |= {"beam_flange_thickness": i, "beam_web_thickness": i}
     for name, value in values.items():
-        study = read(grid({"sampling.parameters": {name: [value]}}))
+        study = read(
+            grid({"sampling.parameters": {name: [value]}, "impact.beam": beams.get(name, {})})
+        )
         assert study.sampling.parameters == {name: (value,)}
 
 
