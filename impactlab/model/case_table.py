@@ -13,8 +13,7 @@ from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import case_fields
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, Impact
-from impactlab.model.parameters import PARAMETERS, Value, flatten, with_values
-from impactlab.model.section import THICKNESSES
+from impactlab.model.parameters import PARAMETERS, SECTION, Value, flatten, with_values
 from impactlab.solver import (
     BEAM_MODELS,
     BENDING_MODELS,
@@ -129,7 +128,7 @@ def _table(
     discretisation = discretisation.resolved(np.unique(impact.beam_model).tolist())
     values: dict[str, Any] = {**flatten(impact, discretisation), "duration": duration}
     values["sphere_mass"] = impact.sphere.total_mass
-    values = dict.fromkeys((f"beam_{name}" for name in THICKNESSES), 0.0) | values
+    values = dict.fromkeys(SECTION, 0.0) | values
     for name, entry in PARAMETERS.items():
         if entry.choices:
             numbered = enumerate(entry.choices)

@@ -17,6 +17,7 @@ from impactlab import wings
 from impactlab.model.checks import Column, did_you_mean
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import MODELS, Impact
+from impactlab.model.section import THICKNESSES
 from impactlab.solver import COMPLIANCES, LOADS, PRESTRESSES, RULES, SCHEMES, SHAPES, SUPPORTS
 from impactlab.solver.contact import LAWS
 
@@ -108,6 +109,8 @@ _CHOICES = {
     "scheme": SCHEMES,
 }
 _WHOLE = ("nodes", "points")
+SECTION = ("beam_shape", *(f"beam_{field}" for field in THICKNESSES))
+"""Parameters of the section beside width and depth."""
 PARAMETERS: dict[str, Parameter] = {
     name: Parameter(
         name, units, text, tuple(path.split(".")), _CHOICES.get(name, ()), name in _WHOLE

@@ -79,7 +79,7 @@ def check_section(beam: Any) -> None:
         "flange_thickness": (0.5 * beam.depth, "half of the depth"),
         "web_thickness": (beam.width, "the width"),
     }
-    for field, (limit, words) in limits.items():
+    for field, (limit, side) in limits.items():
         value = getattr(beam, field)
         if value is None:
             message = f"must be stated, as '4 mm' is: shape = {beam.shape!r} needs it"
@@ -88,7 +88,7 @@ def check_section(beam: Any) -> None:
             positive("Beam", field, value)
             message = f"must be left out: shape = {beam.shape!r} has none"
             require(field in needed, "Beam", field, value, message)
-            require(value < limit, "Beam", field, value, f"must be below {words}")
+            require(value < limit, "Beam", field, value, f"must be below {side}")
     if issubclass(SHAPES[beam.shape], Circle):
         message = f"must be the depth ({beam.depth!r} m): shape = {beam.shape!r} is round"
         require(beam.width == beam.depth, "Beam", "width", beam.width, message)

@@ -1,8 +1,9 @@
 """The yielding beam in OpenSees (extra `opensees`), struck by a given force history.
 
 Half the beam: displacement-based elements with cubic shape functions and lumped mass, three Lobatto
-sections each, of the same fibres as ours, elastic-perfectly plastic; Newmark's average acceleration
-with Newton's iterations. Source: F. McKenna, Comput. Sci. Eng. 13 (2011) 58.
+sections each, elastic-perfectly plastic, of the same fibres as ours (a rectangle), or of layers of
+each flange and of the web (an I-section, a box); Newmark's average acceleration with Newton's
+iterations. Source: F. McKenna, Comput. Sci. Eng. 13 (2011) 58.
 """
 
 from __future__ import annotations
@@ -14,6 +15,29 @@ import impactlab as il
 from impactlab.model.integration import integration_rule
 
 POINTS = 9
+LAYERS = {"flange": 8, "web": 40}
+
+
+def fibres_of(beam: il.Beam) -> list[tuple[float, float]]:
+    """Return the fibres: distance from the axis (m) and area (m2)."""
+    if beam.shape == "rectangle":
+        z, _ = integration_rule("lobatto", POINTS)
+        legendre = np.polynomial.legendre.Legendre.basis(POINTS - 1)(z)
+        areas = beam.width * beam.depth / (POINTS * (POINTS - 1) * legendre**2)
+        return list(zip((0.5 * beam.depth * z).tolist(), areas.tolist(), strict=True))
+    flange = beam.wall_thickness or beam.flange_thickness
+    web, edge = beam.web_thickness or 2.0 * beam.wall_thickness, 0.5 * beam.depth
+    plates = [(-edge, flange - edge, beam.width, "flange")]
+    plates += [
+        (flange - edge, edge - flange, web, "web"),
+        (edge - flange, edge, beam.width, "flange"),
+    ]
+    fibres = []
+    for low, high, width, name in plates:
+        thickness = (high - low) / LAYERS[name]
+        middles = low + thickness * (np.arange(LAYERS[name]) + 0.5)
+        fibres += [(z, width * thickness) for z in middles.tolist()]
+    return fibres
 
 
 def strike(
@@ -24,11 +48,8 @@ def strike(
     force (N): equally spaced from 0 to the duration (s). elements: over half the span.
     """
     steel, dx = beam.material, 0.5 * beam.span / elements
-    E, mass = steel.youngs_modulus, steel.density * beam.width * beam.depth
-    z, _ = integration_rule("lobatto", POINTS)
-    legendre = np.polynomial.legendre.Legendre.basis(POINTS - 1)(z)
-    areas = beam.width * beam.depth / (POINTS * (POINTS - 1) * legendre**2)
-    fibres = list(zip((0.5 * beam.depth * z).tolist(), areas.tolist(), strict=True))
+    E, fibres = steel.youngs_modulus, fibres_of(beam)
+    mass = steel.density * sum(area for _, area in fibres)
     middle, inside = elements + 1, range(1, elements + 1)
 
     ops.wipe()

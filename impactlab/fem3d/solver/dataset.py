@@ -19,7 +19,7 @@ from impactlab.model.checks import integer, positive
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.model.parameters import PARAMETERS, flatten
+from impactlab.model.parameters import PARAMETERS, SECTION, flatten
 from impactlab.types import Floats
 from impactlab.variables import described, provenance
 
@@ -122,8 +122,7 @@ IMPACT_PARAMETERS = [
     for name, entry in PARAMETERS.items()
     if entry.path[0] == "impact"
     and name not in ("contact", *TIMOSHENKO_OPTIONS, "beam_model", "load", "shear_coefficient")
-    and name not in ("strike_position", "support_left", "support_right", "beam_shape")
-    and not name.endswith("thickness")
+    and name not in ("strike_position", "support_left", "support_right", *SECTION)
 ]
 """Parameters of an impact, without those of the beam models alone."""
 

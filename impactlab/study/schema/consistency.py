@@ -17,7 +17,7 @@ from impactlab.methods.sobol import Sobol
 from impactlab.model.case_table import between_nodes
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
 from impactlab.model.impact import MID_SPAN, OTHER_BEAM
-from impactlab.model.parameters import PARAMETERS, Value
+from impactlab.model.parameters import PARAMETERS, SECTION, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.model.quantities import shown
 from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS, WAVE_MODELS
@@ -28,7 +28,7 @@ from impactlab.validation.refusals import Base, refused_corner
 Reasons = Iterator[tuple[str, str]]
 """Dotted keys, and the reason why each is wrong."""
 
-_MESH = ("nodes", "points", "rule", "beam_span", "beam_depth")
+_MESH = ("nodes", "points", "rule", "beam_span", "beam_depth", *SECTION)
 """Parameters that move the places at which profiles are given."""
 _TAILS = np.array([1e-3, 1 - 1e-3])
 
@@ -92,7 +92,8 @@ def _one_mesh_for_profiles(file: StudyFile) -> Reasons:
         "cannot be varied with store.profiles: true, because the places x and z of the profiles "
         "would differ between runs: set profiles: false, or fix it"
     )
-    for name in _MESH if file.store.profiles else ():
+    width = () if file.impact.beam.shape == "rectangle" else ("beam_width",)
+    for name in (*_MESH, *width) if file.store.profiles else ():
         if name in file.sampling.varied:
             yield f"sampling.parameters.{name}", reason
 

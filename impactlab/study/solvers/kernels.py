@@ -13,7 +13,7 @@ from impactlab.model.case_table import case_table
 from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.model.parameters import PARAMETERS, with_values
+from impactlab.model.parameters import PARAMETERS, SECTION, with_values
 from impactlab.simulate import compile_kernels, profile_coordinates, solve
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.switch import DAMPED
@@ -74,11 +74,14 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
 
 
 def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
-    """Return the impact and the discretisation without what is varied."""
-    varied = listed(design, "varied")
+    """Return the impact and the discretisation without what is varied.
+
+    A section has the sizes of the first run, without which it may be none.
+    """
+    varied = {name for name in listed(design, "varied") if name not in SECTION}
     variables = design.variables  # quicker to get than arrays with labels
     stated = [name for name in PARAMETERS if name in variables and name not in varied]
-    fixed = {name: variables[name].values.item() for name in stated}
+    fixed = {name: variables[name].values.flat[0].item() for name in stated}
     return with_values(paper_impact(), Discretisation(), fixed)
 
 

@@ -85,7 +85,7 @@ def test_fibres_have_area_stiffness_and_plastic_moment_exactly(shape, rule, poin
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("shape", FURTHER)
 def test_moment_of_the_kernels_tends_to_the_integral_of_the_stress(shape, rule):
-    """Of second order in the points, from yield to eight times its curvature."""
+    """The error is of second order in the points, from yield to eight times its curvature."""
     beam = beam_of(shape)
     E, S_y = beam.material.youngs_modulus, beam.material.yield_stress
     curvatures = np.linspace(1.0, 8.0, 29) * S_y / (E * 0.015)
@@ -115,7 +115,7 @@ def of_energy(area, second, flows):
 
 @pytest.mark.parametrize("ratio", [0.5, 1.0, 3.0])
 def test_shear_coefficients_without_lateral_strain_are_those_of_energy(ratio):
-    """Of thin walls, from the shear flow; h: between the middles of the flanges."""
+    """Thin walls have a shear flow; h: between the middles of the flanges."""
     h, b, t = 2.0, 2.0 * ratio, 1e-5
     area, second = 2 * (b + h) * t, t * b * h**2 / 2 + t * h**3 / 6
     flange = (lambda s: t * h / 2 * s, t, b / 2, 4)

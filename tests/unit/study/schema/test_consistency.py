@@ -29,6 +29,39 @@ def test_profiles_need_one_mesh(refused, read, grid, name):
     read(grid(varied | {"store.profiles": False}))
 
 
+@pytest.mark.parametrize("name", ["beam_wall_thickness", "beam_shape", "beam_width"])
+def test_profiles_need_one_section(refused, read, grid, name):
+    box = {"shape": "box", "width": "27.8 mm", "wall_thickness": "4 mm"}
+    values = {"beam_wall_thickness": 0.004, "beam_shape": "tube", "beam_width": 0.0278}
+    varied = {"sampling.parameters": {name: [values[name]]}, "impact.beam": box}
+    text = grid(varied | {"store.profiles": True})
+    refused(text, f"sampling.parameters.{name}", "would differ between runs")
+    read(grid(varied | {"store.profiles": False}))
+
+
+@pytest.mark.parametrize(
+    ("shape", "varied", "message"),
+    [
+        (
+            {"shape": "box"},
+            {"velocity": [1]},
+            "must be stated, as '4 mm' is: shape = 'box' needs it",
+        ),
+        ({}, {"beam_wall_thickness": [0.002]}, "must be left out: shape = 'rectangle' has none"),
+        ({}, {"beam_shape": ["box"]}, "beam_wall_thickness must be stated"),
+        (
+            {"shape": "box", "wall_thickness": 0.002},
+            {"beam_wall_thickness": [0.002, 0.02]},
+            "beam_wall_thickness = 20 mm: beam_wall_thickness must be below half of width",
+        ),
+    ],
+)
+def test_sizes_that_make_no_section(refused, grid, shape, varied, message):
+    name = next(iter(varied))
+    key = "impact.beam.wall_thickness" if name == "velocity" else f"sampling.parameters.{name}"
+    refused(grid({"impact.beam": shape, "sampling.parameters": varied}), key, message)
+
+
 @pytest.mark.parametrize(("name", "value"), [("sphere_radius", 0.02), ("sphere_density", 5000)])
 def test_a_stated_mass_leaves_no_say_to_density_and_radius(refused, read, grid, name, value):
     varied = {"sampling.parameters": {name: [value]}}
