@@ -61,7 +61,8 @@ def work(cases: Any) -> Any:
 
     Beyond `node_steps`, this counts the time step that a light sphere or a stiff contact needs
     (Hertz's stiffness at the indentation that takes all of the sphere's energy) and the cost per
-    step of each beam model and scheme. Yielding fibres may cost leapfrog several times as much.
+    step of each beam model and scheme, on the rectangle around the section. Yielding fibres may
+    cost leapfrog several times as much.
     """
     nodes, model = cases["nodes"], cases["beam_model"]
     lumped = model >= BEAM_MODELS.index("spring_mass")
@@ -69,7 +70,8 @@ def work(cases: Any) -> Any:
     hertz, indentation = _hertz(cases)
     stiffness = 1.5 * hertz * np.sqrt(np.minimum(indentation, radius))
     dx = cases["beam_span"] / (nodes - 1)
-    node = cases["mass_per_length"] * dx
+    section = Rectangle(cases["beam_width"], cases["beam_depth"])
+    node = section.mass_per_length(cases["beam_density"]) * dx
     # the largest step of the sphere, and of the beam's middle node if any, on that spring
     step = 2.0 / np.sqrt(stiffness * (1.0 / mass + np.where(lumped, 0.0, 1.0 / node)))
     contact = cases["duration"] / (cases["courant"] * step)
