@@ -11,6 +11,7 @@ SIZES = {
     "tube": {"width": 0.03, "depth": 0.03, "wall_thickness": 0.003},
     "circle": {"width": 0.03, "depth": 0.03},
     "i": {"width": 0.05, "depth": 0.03, "flange_thickness": 0.004, "web_thickness": 0.002},
+    "profile": {"width": 0.05, "depth": 0.03, "profile": "0.0 0.2, 0.6 0.1, 0.6 0.5, 1.0 1.0"},
 }
 """Fields of a beam of each shape, in m."""
 assert SIZES.keys() == set(SHAPES)
@@ -26,9 +27,14 @@ WIDTHS = {
     "tube": lambda z: chord(0.03, z) - chord(0.024, z),
     "circle": lambda z: chord(0.03, z),
     "i": lambda z: np.where(abs(z) > 0.011, 0.05, 0.002),
+    "profile": lambda z: np.where(
+        abs(z) > 0.009,
+        0.05 * (0.5 + 0.5 * (abs(z) / 0.015 - 0.6) / 0.4),
+        0.05 * (0.2 - 0.1 * abs(z) / 0.009),
+    ),
 }
 """Width (m) at a distance z (m) from the axis."""
-BREAKS = {"box": [0.011], "tube": [0.012], "i": [0.011]}
+BREAKS = {"box": [0.011], "tube": [0.012], "i": [0.011], "profile": [0.009]}
 """Places above the axis where the width jumps or has a vertical tangent, in m."""
 
 

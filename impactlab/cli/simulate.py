@@ -134,6 +134,8 @@ def _value(name: str, option: str, text: str) -> Value:
     if name == "duration":
         return given(option, text, "s")
     parameter = PARAMETERS[name]
+    if parameter.any_word:
+        return text
     if not parameter.choices and not parameter.is_integer:
         return given(option, text, parameter.units)
     try:

@@ -23,7 +23,7 @@ from pydantic import (
 from impactlab.methods.distributions import CHOICE, DISTRIBUTIONS, ENTRIES, Choice, Entry, Fixed
 from impactlab.methods.record import Indices
 from impactlab.methods.runs import Sample
-from impactlab.model.parameters import Parameter, Value
+from impactlab.model.parameters import PROFILE_FIXED, Parameter, Value
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown
 from impactlab.validation.fields import LABEL, Names, Whole, at_key, by_name, name_at
@@ -37,6 +37,11 @@ log = logging.getLogger(__name__)
 _EDGE = 2.0**-31
 """Half a step of scipy's 30-bit Sobol sequence: keeps draws off 0 and 1, where quantiles may be
 infinite."""
+
+
+def _refuse_profile(data: Any, info: ValidationInfo) -> Any:
+    """Raise ValueError: the profile of a section is no factor."""
+    raise ValueError(PROFILE_FIXED)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,7 +115,14 @@ class Sampling(Stated):
     @classmethod
     def _read_parameters(cls, data: Any, info: ValidationInfo) -> dict[str, Any]:
         types = {
-            name: Annotated[Any, PlainValidator(partial(cls.read_entry, parameter))]
+            name: Annotated[
+                Any,
+                PlainValidator(
+                    _refuse_profile
+                    if parameter.any_word and parameter.path
+                    else partial(cls.read_entry, parameter)
+                ),
+            ]
             for name, parameter in info.context["parameters"].items()  # type: ignore[index]
         }
         return by_name("Parameters", types, data, info)

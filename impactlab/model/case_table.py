@@ -13,7 +13,15 @@ from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import case_fields
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, Impact
-from impactlab.model.parameters import PARAMETERS, SECTION, Value, flatten, with_values
+from impactlab.model.parameters import (
+    PARAMETERS,
+    PROFILE_FIXED,
+    SECTION,
+    Value,
+    flatten,
+    with_values,
+)
+from impactlab.model.shapes import profile_points
 from impactlab.solver import (
     BEAM_MODELS,
     BENDING_MODELS,
@@ -21,7 +29,7 @@ from impactlab.solver import (
     LUMPED_MODELS,
     SCHEMES,
 )
-from impactlab.solver.types import CASE
+from impactlab.solver.types import CASE, PROFILE
 
 _ON_NODE = 1e-6
 """Distance (spacings) from a node at which a strike lies on it."""
@@ -42,9 +50,7 @@ def case_table(
     """
     positive("simulate", "duration", duration)
     varied = varied or {}
-    for name, values in varied.items():
-        if isinstance(values, str) or np.ndim(values) != 1:
-            raise ValueError(f"varied: {name} = {values!r}: must be a list with one value per run")
+    _check_lists(varied)
     lengths = {len(values) for values in varied.values()}
     if len(lengths) > 1:
         raise ValueError(f"varied: every parameter needs one value per run, got lengths {lengths}")
@@ -80,6 +86,15 @@ def case_table(
         reason = between_nodes(cases["strike_position"][row], int(cases["nodes"][row]))
         raise ValueError(f"{run}strike_position = {cases['strike_position'][row]:.12g}: {reason}")
     return cases
+
+
+def _check_lists(varied: Mapping[str, Any]) -> None:
+    """Raise ValueError where a parameter cannot be varied, or has no list of values."""
+    for name, values in varied.items():
+        if name == "beam_profile":
+            raise ValueError(f"varied: {name}: {PROFILE_FIXED}")
+        if isinstance(values, str) or np.ndim(values) != 1:
+            raise ValueError(f"varied: {name} = {values!r}: must be a list with one value per run")
 
 
 def between_nodes(place: float, nodes: int) -> str:
@@ -133,6 +148,9 @@ def _table(
         if entry.choices:
             numbered = enumerate(entry.choices)
             values[name] = sum(number * (values[name] == word) for number, word in numbered)
+    points = profile_points(impact.beam.profile or ())
+    values["beam_profile"] = np.zeros((PROFILE, 2))
+    values["beam_profile"][: len(points)] = np.reshape(points, (-1, 2))
     values |= _section_fields(impact.beam) | case_fields(impact)
     cases = np.zeros(runs, dtype=CASE)
     for name in CASE.names or ():

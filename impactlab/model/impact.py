@@ -101,12 +101,16 @@ class Beam:
     shear_coefficient : Quantity, optional
         Shear force over G A times the shear angle, of Timoshenko's beam alone; by default that of
         the shape: 5/6 of a rectangle, Cowper's of the others (model/shapes.py).
-    shape : {"rectangle", "box", "tube", "circle", "i"}, default "rectangle"
+    shape : {"rectangle", "box", "tube", "circle", "i", "profile"}, default "rectangle"
         Shape of the section. Tubes and circles are round: their width and depth are the diameter.
     wall_thickness : Quantity, optional
         Thickness of the wall of a box or a tube, in m; these need it, and other shapes have none.
     flange_thickness, web_thickness : Quantity, optional
         Thickness of each flange, and of the web, of an I-section, in m; it needs both.
+    profile : str or sequence of pairs of float, optional
+        Width over the depth, with shape "profile" alone: distances from the axis over half the
+        depth, from 0 to 1, and widths over the largest one, which is `width`; straight in between,
+        two of one distance are a step. Kept as text, "0 0.2, 0.8 0.2, 0.8 1, 1 1".
     support_left, support_right : {"pinned", "clamped", "free"}, default "pinned"
         What holds each end: "pinned" (deflection and moment are zero; a roller is the same, without
         an axial force), "clamped" (deflection and slope are zero), or "free" (moment and shear
@@ -136,6 +140,7 @@ class Beam:
     wall_thickness: SI[float | None] = SI("m", None)
     flange_thickness: SI[float | None] = SI("m", None)
     web_thickness: SI[float | None] = SI("m", None)
+    profile: Any = None
     support_left: str = "pinned"
     support_right: str = "pinned"
 

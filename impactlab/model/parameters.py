@@ -84,6 +84,7 @@ _ROWS = (
             ("web", "web thickness of the beam"),
         )
     ),
+    ("beam_profile", "1", "width over the depth", "impact.beam.profile"),
     ("shear_coefficient", "1", "shear coefficient of the beam", "impact.beam.shear_coefficient"),
     *(
         (f"beam_{field}", units, f"{text} of the beam", f"impact.beam.material.{field}")
@@ -109,11 +110,14 @@ _CHOICES = {
     "scheme": SCHEMES,
 }
 _WHOLE = ("nodes", "points")
-SECTION = ("beam_shape", *(f"beam_{field}" for field in THICKNESSES))
+SECTION = ("beam_shape", "beam_profile", *(f"beam_{field}" for field in THICKNESSES))
 """Parameters of the section beside width and depth."""
+PROFILE_FIXED = "is the same in all runs: vary beam_width and beam_depth, which scale it"
+"""End of the message that refuses it as a factor."""
 PARAMETERS: dict[str, Parameter] = {
     name: Parameter(
-        name, units, text, tuple(path.split(".")), _CHOICES.get(name, ()), name in _WHOLE
+        *(name, units, text, tuple(path.split(".")), _CHOICES.get(name, ()), name in _WHOLE),
+        any_word=name == "beam_profile",
     )
     for name, units, text, path in _ROWS
 }

@@ -14,19 +14,21 @@ twice.
 from __future__ import annotations
 
 from dataclasses import fields
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from impactlab.model.checks import one_of, positive, require
 from impactlab.model.cross_section import Section
-from impactlab.model.shapes import Box, Circle, ISection, Rectangle, Tube
+from impactlab.model.shapes import Box, Circle, ISection, Profile, Rectangle, Tube, profile_points
 from impactlab.solver import RULES
 from impactlab.solver import SHAPES as SHAPE_NAMES
+from impactlab.solver.types import PROFILE
 from impactlab.types import Floats
 
 SHAPES: dict[str, type[Section]] = dict(
-    zip(SHAPE_NAMES, (Rectangle, Box, Tube, Circle, ISection), strict=True)
+    zip(SHAPE_NAMES, (Rectangle, Box, Tube, Circle, ISection, Profile), strict=True)
 )
 """Every shape of the section, by name."""
 THICKNESSES = ("wall_thickness", "flange_thickness", "web_thickness")
@@ -41,7 +43,18 @@ def section_fields(shape: str) -> list[str]:
 def section_of(cases: Any) -> Section:
     """Return the section of a case, or of many of one shape: records of solver.types.CASE."""
     shape = SHAPE_NAMES[int(np.ravel(cases["beam_shape"])[0])]
-    return SHAPES[shape](**{name: cases[f"beam_{name}"] for name in section_fields(shape)})
+    sizes = {name: cases[f"beam_{name}"] for name in section_fields(shape)}
+    if "profile" in sizes:
+        sizes["profile"] = sizes["profile"][: 1 + np.flatnonzero(sizes["profile"][:, 0])[-1]]
+    return SHAPES[shape](**sizes)
+
+
+def section_values(case: Any) -> dict[str, Any]:
+    """Return the parameters of a case's section beside width and depth, by name."""
+    shape = SHAPE_NAMES[case["beam_shape"]]
+    section = section_of(case)
+    sizes = {name: getattr(section, name) for name in section_fields(shape)[2:]}
+    return {f"beam_{name}": size for name, size in sizes.items()} | {"beam_shape": shape}
 
 
 def fibre_table(cases: Any) -> Floats:
@@ -66,6 +79,34 @@ def fibre_table(cases: Any) -> Floats:
     return table
 
 
+def _profile_text(profile: Any, needed: bool) -> str | None:
+    """Return the points of a profile as text, a number having the digits that lead back to it.
+
+    Raises ValueError where they make no section, or the shape needs none.
+    """
+    if profile is None or not needed:
+        message = "must be stated with shape: profile" if needed else "must be left out: the shape "
+        message += ", as '0 0.2, 0.8 0.2, 0.8 1, 1 1'" if needed else "is no profile"
+        require((profile is None) and not needed, "Beam", "profile", profile, message)
+        return None
+    try:
+        points = profile_points(profile)
+        rising = points[0][0] == 0 and points[-1][0] == 1
+        rising &= all(low[0] <= high[0] for low, high in pairwise(points))
+        widths = [width for _, width in points]
+        wide = all(0 < width <= 1 for width in widths[:-1]) and 0 <= widths[-1] <= 1
+    except (TypeError, ValueError):
+        points, rising, wide, widths = (), False, False, []
+    example = "'0 0.2, 0.8 0.2, 0.8 1, 1 1'"
+    message = f"must be pairs of distance and width, as {example}"
+    require(2 <= len(points) <= PROFILE, "Beam", "profile", profile, f"{message}, 2 to {PROFILE}")
+    message = "must go from distance 0 (the axis) to 1 (the edge) without a step back"
+    require(rising, "Beam", "profile", profile, message)
+    message = "must have widths above 0 (at the edge also 0), the largest of which is 1"
+    require(wide and max(widths) == 1, "Beam", "profile", profile, message)
+    return ", ".join(f"{distance!r} {width!r}" for distance, width in points)
+
+
 def check_section(beam: Any) -> None:
     """Raise ValueError unless shape and sizes make a section, one shape in all of a column."""
     one_of("Beam", "shape", beam.shape, tuple(SHAPES))
@@ -74,6 +115,7 @@ def check_section(beam: Any) -> None:
         require(len(shapes) == 1, "Beam", "shape", beam.shape, "must be one in all of a column")
         object.__setattr__(beam, "shape", shapes[0])
     needed = section_fields(beam.shape)
+    object.__setattr__(beam, "profile", _profile_text(beam.profile, "profile" in needed))
     limits = {
         "wall_thickness": (0.5 * np.minimum(beam.width, beam.depth), "half of width and depth"),
         "flange_thickness": (0.5 * beam.depth, "half of the depth"),

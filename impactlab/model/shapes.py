@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ from impactlab.model.integration import integration_rule
 from impactlab.types import Floats
 
 _PI = math.pi
+_OF_ENERGY = 60
+"""Points of a piece: the energy of a width that vanishes at the edge is no polynomial."""
 
 
 @dataclass(frozen=True)
@@ -210,6 +213,84 @@ class Tube(Circle):
     def bore(self) -> Any:
         """Inner diameter, in m."""
         return self.depth - 2.0 * self.wall_thickness
+
+
+def profile_points(profile: Any) -> tuple[tuple[float, float], ...]:
+    """Return the points of a profile, which may be text or pairs; see Profile.
+
+    Raises TypeError or ValueError where they are no pairs of numbers.
+    """
+    if isinstance(profile, str):
+        profile = [pair.split() for pair in profile.split(",")]
+    return tuple((float(distance), float(width)) for distance, width in profile)
+
+
+@dataclass(frozen=True)
+class Profile(Section):
+    """A width that is straight between points above the axis, and the same below it.
+
+    profile: pairs (distance from the axis over half the depth, width over the largest one) from 0
+    to 1; two of the same distance are a step.
+    """
+
+    profile: Any
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "profile", profile_points(self.profile))
+
+    @property
+    def _unit(self) -> tuple[Floats, Floats]:
+        """Points and areas of half a section of width 1 and depth 2."""
+        z, width = np.array(self.profile).T
+        return _pieces(z, np.stack([width[:-1], width[1:]], axis=1), _OF_ENERGY)
+
+    @property
+    def area(self) -> Any:
+        return self.width * self.depth * self._unit[1].sum()
+
+    @property
+    def second_moment(self) -> Any:
+        z, area = self._unit
+        cube = self.depth * self.depth * self.depth
+        return 0.25 * (area * z * z).sum() * (self.width * cube)
+
+    @property
+    def plastic_modulus(self) -> Any:
+        z, area = self._unit
+        return 0.5 * (area * z).sum() * (self.width * (self.depth * self.depth))
+
+    def shear_coefficient(self, poissons_ratio: Any) -> Any:
+        """Take the shear stress V S/(I b), by energy."""
+        z, area = self._unit
+        ends, width = np.array(self.profile).T
+        beyond = (area * z).sum() - _first_moments(z, ends, width)[1]
+        energy = (area * (beyond / np.interp(z, ends, width)) ** 2).sum()
+        return (area * z * z).sum() ** 2 / (area.sum() * energy)
+
+    def width_at(self, z: Floats) -> Floats:
+        ends, width = np.array(self.profile).T
+        return np.asarray(self.width * np.interp(np.abs(z) / (0.5 * self.depth), ends, width))
+
+    def _quadrature(self, n: int) -> tuple[Floats, Floats]:
+        z, width = np.array(self.profile).T
+        pairs = self.width * np.stack([width[:-1], width[1:]], axis=1)
+        return _pieces(0.5 * self.depth * z, pairs, n)
+
+    def _up_to(self, z: Floats) -> tuple[Floats, Floats]:
+        ends, width = np.array(self.profile).T
+        return _first_moments(z, 0.5 * self.depth * ends, self.width * width)
+
+
+def _first_moments(z: Floats, ends: Floats, width: Floats) -> tuple[Floats, Floats]:
+    """Return area and first moment from the axis to z, the width straight between `ends`."""
+    area, moment = np.zeros_like(z), np.zeros_like(z)
+    for (low, lower), (high, upper) in pairwise(zip(ends, width, strict=True)):
+        if high > low:
+            s, slope = np.clip(z, low, high) - low, (upper - lower) / (high - low)
+            part = s * (lower + 0.5 * slope * s)
+            area += part
+            moment += low * part + s * s * (0.5 * lower + slope * s / 3.0)
+    return area, moment
 
 
 def _segment(z: Floats, radius: float) -> tuple[Floats, Floats]:

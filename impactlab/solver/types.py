@@ -39,6 +39,8 @@ def record(real: str, integers: str = "") -> np.dtype[Any]:
     return np.dtype((np.record, fields))
 
 
+PROFILE = 16
+"""Most points of the width over the depth that a case holds."""
 CASE = record(
     """
     duration velocity gravity sphere_radius sphere_mass
@@ -56,13 +58,14 @@ CASE = record(
     integers="contact beam_model load contact_prestress support_left support_right"
     " beam_shape nodes points rule scheme",
 )
+CASE = np.dtype((np.record, [*CASE.descr, ("beam_profile", float, (PROFILE, 2))]))
 """Record type of the case table: one record per run, everything the kernels need to know of it.
 
 The fields are the parameters of model/parameters.py, in SI, with contact law, beam model, load,
 supports, shape, rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS,
-SUPPORTS, SHAPES, RULES and SCHEMES), the sphere's mass and the shear coefficient resolved, and
-thicknesses that the shape does not have as 0; the duration in s; and what follows from them: of
-the section (model/section.py) rho A, rho I, k G A, the stress in the outermost fibre over the
-bending moment and the plastic modulus, and of contact and strip those of
-model/contact_compliance.py.
+SUPPORTS, SHAPES, RULES and SCHEMES), the sphere's mass and the shear coefficient resolved,
+thicknesses that the shape does not have as 0, and the points of a profile, (PROFILE, 2), 0 after
+the last; the duration in s; and what follows from them: of the section (model/section.py) rho A,
+rho I, k G A, the stress in the outermost fibre over the bending moment and the plastic modulus, and
+of contact and strip those of model/contact_compliance.py.
 """

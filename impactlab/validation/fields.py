@@ -142,6 +142,8 @@ def value_type(parameter: Parameter) -> Any:
     """Return the type of one value: a word, a whole number, or a number in SI units."""
     if parameter.choices:
         return Annotated[str, one_of(parameter.long_name, parameter.choices)]
+    if parameter.any_word and parameter.path:
+        return str | list[Any]
     number = Whole if parameter.is_integer else quantity(parameter.units)
     return Annotated[number, AfterValidator(partial(check_alone, parameter))]
 

@@ -23,6 +23,7 @@ import xarray as xr
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, SECTION, with_values
+from impactlab.model.section import section_values
 from impactlab.simulate import run_dataset
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy
 from impactlab.study.shard import Array, Columns
@@ -241,9 +242,8 @@ def _responses(task: Task, cases: Array, output: OutputSpec) -> Columns:
         values = {
             name: entry.choices[case[name]] if entry.choices else case[name].item()
             for name, entry in PARAMETERS.items()
-            # a rectangle, and sizes that a shape does not have, are 0
-            if name in (cases.dtype.names or ()) and (name not in SECTION or case[name])
-        }
+            if name in (cases.dtype.names or ()) and name not in SECTION
+        } | section_values(case)
         impact, grid = with_values(paper_impact(), Discretisation(), values)
         with warnings.catch_warnings():  # told before
             warnings.simplefilter("ignore")

@@ -163,6 +163,16 @@ def test_runs_of_rectangles_keep_the_shear_coefficient_unless_the_shape_varies()
 
 
 WRONG = [
+    ("profile", {"profile": None}, r"Beam\.profile = None: must be stated with shape: profile"),
+    ("box", {"profile": "0 1, 1 1"}, r"Beam\.profile = '0 1, 1 1': must be left out"),
+    ("profile", {"profile": "0 1; 1 1"}, r"Beam\.profile = .*: must be pairs of distance"),
+    ("profile", {"profile": "0 1"}, r"Beam\.profile = '0 1': must be pairs"),
+    ("profile", {"profile": [(0, 1)] * 16 + [(1, 1)]}, r"Beam\.profile = .*: must be pairs .* 16"),
+    ("profile", {"profile": "0 1, 0.9 1"}, r"Beam\.profile = .*: must go from distance 0"),
+    ("profile", {"profile": "0 1, 0.6 1, 0.5 1, 1 1"}, r"Beam\.profile = .*: must go from"),
+    ("profile", {"profile": "0 0, 1 1"}, r"Beam\.profile = .*: must have widths above 0"),
+    ("profile", {"profile": "0 0.5, 1 0.9"}, r"Beam\.profile = .*: must have widths above 0"),
+    ("profile", {"profile": "0 nan, 1 1"}, r"Beam\.profile = .*: must have widths above 0"),
     ("box", {"wall_thickness": None}, r"Beam\.wall_thickness = None: must be stated.*'box' needs"),
     ("box", {"wall_thickness": 0.015}, r"Beam\.wall_thickness = 0\.015: must be below half of"),
     ("box", {"web_thickness": 1e-3}, r"Beam\.web_thickness = 0\.001: must be left out: shape = 'b"),
@@ -198,7 +208,7 @@ def test_what_is_of_rectangles_refuses_other_shapes(shape, varied, message):
 
 
 def test_shapes_in_columns_give_the_table_of_single_runs_bit_by_bit():
-    rows = [parameters_of(shape) for shape in (*SIZES, "box")]
+    rows = [parameters_of(shape) for shape in (*SIZES, "box") if shape != "profile"]
     names = {name for row in rows for name in row}
     varied = {name: [row.get(name) for row in rows] for name in sorted(names)}
     base = il.paper_impact(), il.Discretisation()
@@ -214,3 +224,35 @@ def test_shapes_in_columns_give_the_table_of_single_runs_bit_by_bit():
     for case, value in zip(many, values.tolist(), strict=True):
         single = with_values(*base, {"beam_flange_thickness": value})
         assert case.tobytes() == case_table(*single, duration=1e-3)[0].tobytes()
+
+
+def test_profiles_of_other_shapes_are_these_shapes():
+    """The shear coefficient of a rectangle is that of energy, too."""
+    for shape, profile in {"rectangle": [(0, 1), (1, 1)], "i": I_PROFILE}.items():
+        sizes = {"width": 0.05, "depth": 0.03, "profile": profile}
+        section, other = beam_of("profile", **sizes).section, beam_of(shape).section
+        for name in ("area", "second_moment", "plastic_modulus", "stress_per_moment"):
+            assert getattr(section, name) == pytest.approx(getattr(other, name), rel=1e-13)
+        if shape == "rectangle":
+            assert section.shear_coefficient(0.3) == pytest.approx(5 / 6, rel=1e-12)
+        else:
+            for rule in RULES:
+                for one, two in zip(section.cut(rule, 9), other.cut(rule, 9), strict=True):
+                    assert one == pytest.approx(two, rel=1e-12)
+    # a rhombus: tau over the mean is 1 + s - 2 s^2 at the distance s, so k = 30/31
+    rhombus = beam_of("profile", profile="0 1, 1 0").section
+    assert rhombus.shear_coefficient(0.3) == pytest.approx(30 / 31, rel=1e-12)
+
+
+I_PROFILE = [(0, 0.04), (11 / 15, 0.04), (11 / 15, 1), (1, 1)]
+
+
+def test_a_profile_is_no_factor():
+    base = replace(il.paper_impact(), beam=beam_of("profile")), il.Discretisation(nodes=5)
+    with pytest.raises(ValueError, match="beam_profile: is the same in all runs"):
+        case_table(*base, duration=1e-3, varied={"beam_profile": ["0 1, 1 1"]})
+    # of which the sizes are
+    cases = case_table(*base, duration=1e-3, varied={"beam_depth": [0.02, 0.03]})
+    for case, depth in zip(cases, (0.02, 0.03), strict=True):
+        single = case_table(*with_values(*base, {"beam_depth": depth}), duration=1e-3)
+        assert case.tobytes() == single[0].tobytes()

@@ -10,7 +10,7 @@ import impactlab as il
 from impactlab.fem3d.wing import SIZES
 from impactlab.model.case_table import case_table
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
-from impactlab.model.parameters import PARAMETERS, flatten, with_values
+from impactlab.model.parameters import PARAMETERS, SECTION, flatten, with_values
 from impactlab.solver import BEAM_MODELS, LOADS, RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 
@@ -38,7 +38,7 @@ def test_a_wrong_run_is_named_with_its_field():
 
 RUNS = 40
 RANDOM = np.random.default_rng(3)
-NAMES = tuple(name for name in PARAMETERS if "shape" not in name and "thickness" not in name)
+NAMES = tuple(name for name in PARAMETERS if name not in SECTION)
 """Of any beam; those of one shape are in test_shapes."""
 TOGETHER = tuple(name for name in NAMES if name not in (SIZES[1], "beam_rate_sensitivity"))
 """But for what contradicts another."""
