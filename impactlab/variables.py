@@ -120,7 +120,8 @@ WARNINGS: dict[str, tuple[int, str]] = {
     "wall_may_dent": (
         outputs.WALL_MAY_DENT,
         "the section has (or may have) a wall or a flange that dents and bends under the sphere, "
-        "which the beam model does not: forces are too large, contacts too short, the more so the thinner it is",
+        "which the beam model does not: forces are too large, contacts too short, the more so the "
+        "thinner it is",
     ),
     "round_top": (
         outputs.ROUND_TOP,
