@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from typing import Any
 
@@ -21,6 +22,7 @@ from impactlab.model.integration import integration_rule
 from impactlab.types import Floats
 
 _PI = math.pi
+_leggauss = cache(np.polynomial.legendre.leggauss)
 _OF_ENERGY = 60
 """Points of a piece: the energy of a width that vanishes at the edge is no polynomial."""
 
@@ -190,8 +192,8 @@ class Circle(Section):
 
     def _quadrature(self, n: int) -> tuple[Floats, Floats]:
         """Use polar coordinates: no width with a vertical tangent."""
-        x, along = np.polynomial.legendre.leggauss(n + 1)
-        y, around = np.polynomial.legendre.leggauss(n + 12)  # of sin^(2n-1), to rounding
+        x, along = _leggauss(n + 1)
+        y, around = _leggauss(n + 12)  # of sin^(2n-1), to rounding
         wall = 0.25 * (self.depth - self.bore)
         radius, angle = 0.5 * self.bore + wall * (1.0 + x), 0.25 * _PI * (1.0 + y)
         z = np.multiply.outer(radius, np.sin(angle))
@@ -306,7 +308,7 @@ def _pieces(ends: Any, widths: Any, n: int) -> tuple[Floats, Floats]:
 
     widths: at the lower and the upper end of each piece, (pieces, 2). See Section._quadrature.
     """
-    x, weights = np.polynomial.legendre.leggauss(n + 1)
+    x, weights = _leggauss(n + 1)
     share = 0.5 * (1.0 + x)
     low, length = np.asarray(ends[:-1]), np.diff(ends)
     z = low[:, np.newaxis] + np.multiply.outer(length, share)
