@@ -73,7 +73,7 @@ def simulate(
     from impactlab.duration import too_short
     from impactlab.model.case_table import case_table
     from impactlab.simulate import simulate as solve_one
-    from impactlab.simulate import solve
+    from impactlab.solve import solve
 
     cases = case_table(impact, grid, duration=seconds)
     answers: Any
@@ -212,7 +212,7 @@ def compile_kernels(
     For images of containers, and for clusters before their jobs begin: without it, the first
     impact compiles. NUMBA_CACHE_DIR names another folder.
     """
-    from impactlab.simulate import compile_kernels
+    from impactlab.solve import compile_kernels
 
     models = wings.models().values() if further else ()
     for compiles in (compile_kernels, *(model.part("compile") for model in models)):

@@ -19,7 +19,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import Value, flatten, with_values
 from impactlab.model.quantities import amount, time
-from impactlab.simulate import solve
+from impactlab.solve import solve
 from impactlab.study.schema.declarations import ImpactStudy
 
 MODELS = ("euler_bernoulli", "timoshenko", "spring_mass")  # in the order of tables and figures

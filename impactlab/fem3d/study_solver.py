@@ -34,7 +34,7 @@ from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import OTHER_SECTION, Impact, paper_impact
 from impactlab.model.parameters import with_values
-from impactlab.simulate import solve as solve_cases
+from impactlab.solve import solve as solve_cases
 from impactlab.solver import BEAM_MODELS
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.solver.types import CASE

@@ -8,7 +8,7 @@ from impactlab.model.case_table import case_table
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, Impact, Sphere, paper_impact
 from impactlab.model.material import Material
-from impactlab.simulate import fibre_section
+from impactlab.solve import fibre_section
 from impactlab.solver.beam import BeamGrid
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.stability import discretise

@@ -12,7 +12,8 @@ from impactlab.model.case_table import case_table
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Beam, Impact, Sphere, paper_impact
 from impactlab.model.material import Material
-from impactlab.simulate import fibre_section, run_dataset
+from impactlab.simulate import run_dataset
+from impactlab.solve import fibre_section
 from impactlab.solver import RULES, section
 from impactlab.types import Floats
 from impactlab.verification.cases import with_beam_material

@@ -11,7 +11,8 @@ import xarray as xr
 from impactlab.model.case_table import case_table
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.simulate import fibre_section, run_dataset
+from impactlab.simulate import run_dataset
+from impactlab.solve import fibre_section
 from impactlab.solver.contact.history import CONTACT, load, make_pair
 from impactlab.solver.contact.rate import strain
 from impactlab.solver.section import bend_at_rate

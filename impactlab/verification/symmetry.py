@@ -14,7 +14,8 @@ from impactlab.model.case_table import case_table
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
-from impactlab.simulate import fibre_section, run_dataset
+from impactlab.simulate import run_dataset
+from impactlab.solve import fibre_section
 from impactlab.solver.beam import make_beam, move_virgin, strike
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import CONTACT, force, make_pair

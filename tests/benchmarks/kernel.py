@@ -24,7 +24,7 @@ from rich.table import Table
 import impactlab as il
 from impactlab.model.case_table import case_table
 from impactlab.model.cost import node_steps
-from impactlab.simulate import solve
+from impactlab.solve import solve
 
 DURATION = 1e-3
 NODE_STEPS = 1e7

@@ -19,7 +19,7 @@ from rich.table import Table
 
 import impactlab as il
 from impactlab.model.case_table import case_table
-from impactlab.simulate import solve
+from impactlab.solve import solve
 
 GRID = il.Discretisation(nodes=101, scheme="modal")
 DURATION = 10e-3

@@ -31,7 +31,7 @@ from rich.table import Table
 import impactlab as il
 from impactlab.figures import style
 from impactlab.model.case_table import case_table
-from impactlab.simulate import compile_kernels, solve
+from impactlab.solve import compile_kernels, solve
 from impactlab.verification.cases import elastic
 from impactlab.verification.solutions import hertz, modal
 

@@ -23,7 +23,7 @@ from impactlab.analysis import surrogate
 from impactlab.analysis.surrogate.stored import Surrogate
 from impactlab.methods.distributions import distribution_of
 from impactlab.model.case_table import case_table
-from impactlab.simulate import solve
+from impactlab.solve import solve
 
 NUMBER = int(sys.argv[1]) if len(sys.argv) > 1 else 200
 RUNS = int(sys.argv[2]) if len(sys.argv) > 2 else 400

@@ -9,7 +9,7 @@ import pytest
 import impactlab as il
 from impactlab.model.beam_modes import mode_table
 from impactlab.model.case_table import case_table
-from impactlab.simulate import fibre_section, solve
+from impactlab.solve import fibre_section, solve
 from impactlab.solver import kernels, modal
 from impactlab.solver.beam import copies
 from impactlab.solver.contact.history import make_pair

@@ -17,7 +17,8 @@ import xarray as xr
 import impactlab as il
 from impactlab.model.case_table import case_table
 from impactlab.model.parameters import with_values
-from impactlab.simulate import fibre_section, run_dataset
+from impactlab.simulate import run_dataset
+from impactlab.solve import fibre_section
 from impactlab.solver import RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import make_pair

@@ -5,7 +5,7 @@ import pytest
 
 import impactlab as il
 from impactlab.model.case_table import case_table
-from impactlab.simulate import fibre_section
+from impactlab.solve import fibre_section
 from impactlab.solver import RULES
 from impactlab.solver.section import bend as bend_row
 from impactlab.solver.types import CASE

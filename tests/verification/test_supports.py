@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 import impactlab as il
 from impactlab.model.case_table import case_table
 from impactlab.model.parameters import with_values
-from impactlab.simulate import fibre_section
+from impactlab.solve import fibre_section
 from impactlab.solver import SUPPORTS, euler_bernoulli, strip, timoshenko
 from impactlab.solver.beam import (
     add_moment,

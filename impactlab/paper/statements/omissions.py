@@ -25,7 +25,7 @@ from impactlab.paper.statements.statement import (
     runs_of,
     statement,
 )
-from impactlab.simulate import solve
+from impactlab.solve import solve
 
 EFFECTS_STUDY, MESHES_STUDY = "fig05_effects", "witness_mesh"
 """Studies: with and without shear; the 3-D model on finer meshes."""

@@ -14,7 +14,7 @@ from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, SECTION, with_values
-from impactlab.simulate import compile_kernels, profile_coordinates, solve
+from impactlab.solve import compile_kernels, profile_coordinates, solve
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.switch import DAMPED
 from impactlab.solver.jit import SOURCES_HASH

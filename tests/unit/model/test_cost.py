@@ -11,7 +11,7 @@ from impactlab.model.case_table import case_table
 from impactlab.model.cost import node_steps, work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
-from impactlab.simulate import fibre_section, solve
+from impactlab.solve import fibre_section, solve
 from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.stability import discretise

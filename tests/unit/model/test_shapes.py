@@ -13,7 +13,7 @@ from impactlab.model.case_table import case_table
 from impactlab.model.parameters import with_values
 from impactlab.model.section import fibre_table
 from impactlab.model.shapes import Box, Circle, ISection, Tube
-from impactlab.simulate import fibre_section
+from impactlab.solve import fibre_section
 from impactlab.solver import RULES
 from impactlab.solver.section import bend
 

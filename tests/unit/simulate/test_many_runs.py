@@ -8,7 +8,7 @@ import pytest
 import impactlab as il
 from impactlab.model.case_table import case_table
 from impactlab.model.parameters import with_values
-from impactlab.simulate import solve
+from impactlab.solve import solve
 from impactlab.variables import FLAGS, HISTORIES, PROFILES, RESPONSES
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from impactlab.simulate import fibre_section
+from impactlab.solve import fibre_section
 from impactlab.solver.beam import (
     bending_energy,
     kinetic_energy,

@@ -6,7 +6,7 @@ import pytest
 
 import impactlab as il
 from impactlab.model.case_table import case_table
-from impactlab.simulate import fibre_section, solve
+from impactlab.solve import fibre_section, solve
 from impactlab.solver import outputs
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.kernels import WORST_ENERGY_ERROR

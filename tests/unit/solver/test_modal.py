@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.simulate import fibre_section, simulate, simulate_many
+from impactlab.simulate import simulate, simulate_many
+from impactlab.solve import fibre_section
 from impactlab.solver.beam import make_grid
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.fibre_plasticity import make_plastic_state, plastic_energy

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from impactlab.simulate import fibre_section
+from impactlab.solve import fibre_section
 from impactlab.solver import RULES
 from impactlab.solver.fibre_plasticity import plastic_energies
 from impactlab.solver.section import bend as bend_row

@@ -6,7 +6,7 @@ import pytest
 import impactlab as il
 from impactlab.model.case_table import case_table
 from impactlab.model.parameters import with_values
-from impactlab.simulate import fibre_section, solve
+from impactlab.solve import fibre_section, solve
 from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.stability import _stiffness, largest_time_step, stiffest_contact

@@ -6,7 +6,7 @@ from math import exp, log
 import numpy as np
 import pytest
 
-from impactlab.simulate import fibre_section
+from impactlab.solve import fibre_section
 from impactlab.solver.fibre_plasticity import plastic_energies
 from impactlab.solver.section import bend, bend_at_rate, with_rate
 from impactlab.solver.strain_rate import RateLaw, overstress, rate_factor

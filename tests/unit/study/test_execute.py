@@ -12,7 +12,7 @@ import impactlab as il
 from impactlab.model.case_table import case_table
 from impactlab.model.cost import node_steps
 from impactlab.model.parameters import flatten
-from impactlab.simulate import fibre_section
+from impactlab.solve import fibre_section
 from impactlab.solver import SCHEMES
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.stability import discretise

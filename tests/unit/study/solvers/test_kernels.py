@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from impactlab.simulate import compile_kernels
+from impactlab.solve import compile_kernels
 from impactlab.solver import BEAM_MODELS, SCHEMES
 from impactlab.solver.contact import LAWS
 from impactlab.solver.kernels import is_extended, kernel_of

@@ -1,0 +1,117 @@
+"""The kernels' one door: a case table goes in, arrays of answers come out."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from impactlab.jit import precompile
+from impactlab.model.beam_modes import mode_keys, mode_table
+from impactlab.model.discretisation import Discretisation
+from impactlab.model.impact import Impact
+from impactlab.model.section import fibre_table
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, SCHEMES
+from impactlab.solver.contact.history import CONTACT
+from impactlab.solver.event_tracker import EVENTS
+from impactlab.solver.jit import FOLDER
+from impactlab.solver.kernels import is_extended, kernel_of
+from impactlab.solver.outputs import blank
+from impactlab.solver.section import FibreSection, make_section
+from impactlab.variables import HISTORIES
+
+_COMPILE = """
+import impactlab as il
+from impactlab.model.case_table import case_table
+from impactlab.solve import solve
+grid = il.Discretisation(nodes=5, scheme={scheme!r})
+varied = {{"beam_model": [{model!r}], "contact": [{law!r}]}}
+solve(case_table(il.paper_impact(), grid, duration=1e-6, varied=varied))
+"""
+
+
+def solve(
+    cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = False
+) -> dict[str, np.ndarray[Any, Any]]:
+    """Run the kernels over a case table, on the calling thread and without the GIL.
+
+    samples: length of each history (0: none). profiles: keep the fields along the beam, for
+    which all cases must share nodes and points; raises ValueError where they do not. Returns by
+    name, of R runs: the fields of solver.outputs.RESPONSE, (R,); histories, (R, samples); profiles,
+    (R, nodes, points), or (R, nodes) for the deflection.
+    """
+    if profiles and any(np.unique(cases[name]).size > 1 for name in ("nodes", "points", "rule")):
+        raise ValueError("profiles need the same nodes, points and rule in every run")
+    nodes, points = (int(cases[0].nodes), int(cases[0].points)) if profiles else (0, 0)
+    fibres, runs = points // 2, cases.size
+    table = fibre_table(cases)
+    responses = blank(runs)
+    histories = np.full((runs, len(HISTORIES), samples), np.nan)
+    deflection = np.full((runs, nodes), np.nan)
+    strains = np.full((2, runs, nodes, fibres), np.nan)
+    contacts, events = np.zeros(runs, CONTACT), np.zeros(runs, EVENTS)
+    arrays = (responses, contacts, events, histories, deflection, *strains)
+    models, schemes = cases["beam_model"], cases["scheme"]
+    kinds = np.stack([models, schemes, is_extended(cases), mode_keys(cases)])
+    starts = np.flatnonzero(np.diff(kinds, prepend=-1).any(axis=0))
+    for start, end in itertools.pairwise((*starts, runs)):
+        model, scheme, extended, _ = kinds[:, start]
+        compile_kernels([BEAM_MODELS[model]], [SCHEMES[scheme]], [bool(extended)])
+        kernel_of(model, scheme, bool(extended))(
+            cases[start:end],
+            table[start:end],
+            mode_table(cases[start]),
+            *(array[start:end] for array in arrays),
+        )
+    columns = {name: responses[name].copy() for name in responses.dtype.names or ()}
+    if samples:
+        columns |= zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)
+    if profiles:
+        columns["equivalent_plastic_strain"] = _depth(strains[1], 1.0, points)
+        columns["plastic_strain"] = _depth(strains[0], -1.0, points)
+        columns["deflection"] = deflection
+    return columns
+
+
+def compile_kernels(
+    beam_models: Iterable[str] = BEAM_MODELS,
+    schemes: Iterable[str] = SCHEMES,
+    extended: Iterable[bool] = (False, True),
+) -> Path | None:
+    """Compile the kernels of these models and schemes, unless they are compiled.
+
+    extended: whether those with what kernels.is_extended names, those without, or both. Returns
+    the folder of the compiled kernels, None where they cannot be kept.
+    """
+    programs = {}
+    for model, scheme, more in itertools.product(beam_models, schemes, extended):
+        if model in BENDING_MODELS or (model in BEAM_MODELS and scheme == "leapfrog"):
+            kernel = kernel_of(BEAM_MODELS.index(model), SCHEMES.index(scheme), more)
+            law = "hunt_crossley" if more else "hertz"
+            programs[kernel] = _COMPILE.format(model=model, scheme=scheme, law=law)
+    precompile(programs)
+    return FOLDER
+
+
+def profile_coordinates(impact: Impact, discretisation: Discretisation) -> dict[str, Any]:
+    """Return the `x` and `z` coordinates (m) of fields along the beam."""
+    beam = impact.beam
+    z, _ = beam.section.cut(discretisation.rule, discretisation.points)
+    return {"x": np.linspace(0.0, beam.span, discretisation.nodes), "z": z}
+
+
+def fibre_section(case: Any) -> FibreSection:
+    """Return the kernels' section of a case, for checks."""
+    (fibres,) = fibre_table(np.atleast_1d(case))
+    section: FibreSection = make_section(case, fibres)
+    return section
+
+
+def _depth(lower: np.ndarray[Any, Any], sign: float, points: int) -> np.ndarray[Any, Any]:
+    """Return all fibres in ascending z, from those of z > 0, outermost first."""
+    axis = np.abs(0.0 * lower[:, :, : points % 2])  # NaN where a run diverged, as all else
+    upper = sign * lower + 0.0  # no -0.0
+    return np.concatenate([upper, axis, lower[:, :, ::-1]], axis=2)
