@@ -5,10 +5,10 @@ the extents themselves count (the flat top under the sphere, the faces of the 3-
 of contact_compliance.py, a strip's bending across its width), they are of a rectangle: others are
 refused there, or remarked (solver/responses.py).
 
-A further shape is a class in shapes.py with its name in SHAPES, here and in the solver. Its fields
-are those of `Beam`: a further one is a parameter and a field of the case table, too. The kernels
-take a section that is symmetric about its axis: of its fibres they keep those above, each counted
-twice.
+To add a shape, write its class in shapes.py and put its name into SHAPES, here and in the solver.
+Its fields are those of `Beam`; a new field is a parameter and a field of the case table, too.
+Kernels take sections that are symmetric about their axis: of the fibres they keep those above,
+each counted twice.
 """
 
 from __future__ import annotations

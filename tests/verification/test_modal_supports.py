@@ -116,7 +116,7 @@ def test_a_step_with_any_sections_yielding_is_stable(left, right, place, nodes):
 @pytest.mark.parametrize("level", [LEAST, MOST])
 @pytest.mark.parametrize("left", ["free", "clamped"])
 def test_a_leap_of_any_modes_is_as_many_steps(left, level):
-    """Of rigid ones, too, whose deflection grows without end."""
+    """The rigid modes are among them, whose deflection grows without end."""
     results = []
     for leaps in (False, True):
         *_, ours = modes_of(left, "free", 0.3, 21)
