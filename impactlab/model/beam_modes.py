@@ -29,13 +29,13 @@ from typing import Any
 
 import numpy as np
 
+from impactlab.model.section import fibre_table
 from impactlab.solver import SCHEMES, SUPPORTS
 
 Array = np.ndarray[Any, Any]
 
 _SPRINGS = {"pinned": (np.inf, 0.0), "clamped": (np.inf, np.inf), "free": (0.0, 0.0)}
-_TABLED = ("support_left", "support_right", "nodes", "strike_position")
-"""Fields of a case on which its table depends."""
+_ELASTIC = SUPPORTS.index("elastic")
 _HALVINGS, _SECANTS = 40, 6
 _LEFT_OUT = 3
 """Modes of which the sum of those left out is made, over those kept; the rest is estimated."""
@@ -55,19 +55,41 @@ def mode_keys(cases: Any) -> Any:
     """Return a number per case, the same for those with the same table; 0 without any."""
     keys, tabled = np.zeros(cases.size, dtype=np.int64), np.flatnonzero(has_table(cases))
     if tabled.size:
-        columns = np.stack([cases[name][tabled].astype(float) for name in _TABLED])
+        some = cases[tabled]
+        columns = np.vstack([_springs(some).reshape(4, -1), some["nodes"], some["strike_position"]])
         keys[tabled] = 1 + np.unique(columns, axis=1, return_inverse=True)[1].reshape(-1)
     return keys
+
+
+def _springs(cases: Any) -> Array:
+    """Return k_t and k_r of the left ends and of the right ones, over EI and span, (2, 2, cases).
+
+    EI is that of the integration rule.
+    """
+    z, area = np.moveaxis(fibre_table(cases), 1, 0)
+    bending, span = cases["beam_youngs_modulus"] * np.sum(area * z * z, axis=1), cases["beam_span"]
+    springs = np.zeros((2, 2, cases.size))
+    for row, side in zip(springs, ("left", "right"), strict=True):
+        support = cases[f"support_{side}"]
+        for entry, (kind, scale) in enumerate(
+            (("", span**3 / bending), ("rotational_", span / bending))
+        ):
+            row[entry] = np.where(
+                support == _ELASTIC, scale * cases[f"{kind}stiffness_{side}"], 0.0
+            )
+        for kind, fixed in _SPRINGS.items():
+            row[:, support == SUPPORTS.index(kind)] = np.array(fixed)[:, np.newaxis]
+    return springs
 
 
 def mode_table(case: Any) -> Array:
     """Return the table of a case's modes, see `_table`; without any entry where it needs none."""
     if not has_table(case):
         return np.empty((0, 0))
-    ends = tuple(SUPPORTS[case[f"support_{side}"]] for side in ("left", "right"))
+    left, right = _springs(np.atleast_1d(case))[..., 0].tolist()
     nodes = int(case["nodes"])
     struck = round(float(case["strike_position"]) * (nodes - 1))
-    return _table(tuple(_SPRINGS[end] for end in ends), nodes, struck)
+    return _table((tuple(left), tuple(right)), nodes, struck)
 
 
 @functools.lru_cache(maxsize=16)
@@ -223,11 +245,12 @@ def _curvatures(springs: Array, halved: bool, b: Array, phi: Array, places: Arra
         rows[i, i - 1 : i + 2] = np.array([1.0, -2.0, 1.0]) / dx**2
     for side, end, beside in ((0, 0, 1), (1, solved, solved - 1)):
         k_t, k_r = (0.0, np.inf) if side and halved else springs[side]
-        turn = np.array([-2.0, 2.0]) / dx**2  # of the end, over the share that the spring takes
-        rows[end, [end, beside]] = turn / (1.0 + 2.0 / dx / k_r) if k_r > 0.0 else 0.0
-        if 0.0 < k_r < np.inf:
-            rows[size + side, [end, beside]] = turn / (k_r + 2.0 / dx)
-            weights[size + side] = k_r
+        slope = np.array([-1.0, 1.0]) / dx
+        if k_r == np.inf:
+            rows[end, [end, beside]] = 2.0 * slope / dx
+        elif k_r > 0.0:  # in series with half a spacing, which stays elastic
+            rows[size + side, [end, beside]] = slope
+            weights[size + side] = 1.0 / (1.0 / k_r + 0.5 * dx)
         if 0.0 < k_t < np.inf:
             rows[size + 2 + side, end], weights[size + 2 + side] = 1.0, k_t
         free[end] = k_t < np.inf

@@ -216,7 +216,8 @@ def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
     _within_table(impact, applies, refused)
     if np.any(strip & (beam.depth > beam.width)):
         raise ValueError(f"{refused}needs a beam as wide as deep at least: set 'beam'")
-    free = np.equal(beam.support_left, "free") | np.equal(beam.support_right, "free")
+    moving = "free", "elastic"
+    free = np.isin(beam.support_left, moving) | np.isin(beam.support_right, moving)
     if np.any(strip & free):
         raise ValueError(f"{refused}needs ends that are pinned or clamped: set 'beam'")
     c, gamma = _of_beam(impact, FORCE, MOMENT)

@@ -11,6 +11,7 @@ from impactlab.solver import BEAM_MODELS, SCHEMES, SUPPORTS
 
 A_SECOND = 3e8
 """Node-steps per second of one core; half of it or twice is possible."""
+_ELASTIC = SUPPORTS.index("elastic")
 _FIRST = np.array([[98.8, 237.7, 237.7], [237.7, 500.6, 12.36], [237.7, 12.36, 500.6]])
 """Lowest omega^2 over EI/(rho A L^4), of bending, by left and right end; pinned: by Rayleigh."""
 
@@ -18,14 +19,38 @@ _FIRST = np.array([[98.8, 237.7, 237.7], [237.7, 500.6, 12.36], [237.7, 12.36, 5
 def solved(cases: Any) -> Any:
     """Return the share of the nodes that the kernels solve: half of a symmetric beam's."""
     symmetric = cases["support_left"] == cases["support_right"]
+    for kind in ("stiffness", "rotational_stiffness"):
+        same = cases[f"{kind}_left"] == cases[f"{kind}_right"]
+        symmetric = symmetric & (same | (cases["support_left"] != _ELASTIC))
     return np.where(symmetric & (cases["strike_position"] == 0.5), 0.5, 1.0)
 
 
 def flies(cases: Any) -> Any:
     """Return whether nothing holds the beam, so that it moves off under the blow."""
-    left, right = cases["support_left"], cases["support_right"]
-    clamped, free = SUPPORTS.index("clamped"), SUPPORTS.index("free")
-    return ((left == free) & (right != clamped)) | ((right == free) & (left != clamped))
+    (left, turn_left), (right, turn_right) = (_holds(cases, side) for side in ("left", "right"))
+    turns = turn_left | turn_right
+    return ~((left & right) | ((left | right) & turns))
+
+
+def _holds(cases: Any, side: str) -> tuple[Any, Any]:
+    """Return whether an end is held against deflection, and against rotation."""
+    support, clamped = cases[f"support_{side}"], SUPPORTS.index("clamped")
+    springs = (cases[f"{kind}stiffness_{side}"] > 0.0 for kind in ("", "rotational_"))
+    against_w, against_turn = (spring & (support == _ELASTIC) for spring in springs)
+    pinned = support == SUPPORTS.index("pinned")
+    return against_w | pinned | (support == clamped), against_turn | (support == clamped)
+
+
+def _kinds(cases: Any) -> tuple[tuple[Any, Any], Any, Any]:
+    """Return kinds of both ends, elastic ones as pinned or free, and their flexibilities in m/N."""
+    kinds, soft = [], []
+    for side in ("left", "right"):
+        support, spring = cases[f"support_{side}"], cases[f"stiffness_{side}"]
+        elastic, held = support == _ELASTIC, spring > 0.0
+        other = np.where(held, SUPPORTS.index("pinned"), SUPPORTS.index("free"))
+        kinds.append(np.where(elastic, other, support))
+        soft.append(np.where(elastic & held, 1.0 / np.where(held, spring, 1.0), 0.0))
+    return (kinds[0], kinds[1]), soft[0], soft[1]
 
 
 def node_steps(cases: Any) -> Any:
@@ -109,11 +134,15 @@ def swing(cases: Any) -> Any:
     flexibility, lever = _statics(cases)
     stiffness = metal * cases["rotary_inertia"] / span**3
     beam = cases["mass_per_length"] * span
-    first = _FIRST[cases["support_left"], cases["support_right"]]
+    ends, soft_left, soft_right = _kinds(cases)
+    first = _FIRST[ends[0], ends[1]]
     yields = cases["beam_model"] != BEAM_MODELS.index("elastic")
     collapse = cases["beam_yield_stress"] * cases["plastic_modulus"] / (lever * span)
     hinge = yields * cases["sphere_mass"] * cases["velocity"] / collapse
-    period = 2.0 * np.pi * np.sqrt((cases["sphere_mass"] * flexibility + beam / first) / stiffness)
+    square = (cases["sphere_mass"] * flexibility + beam / first) / stiffness
+    x, y = cases["strike_position"], 1.0 - cases["strike_position"]
+    square = square + cases["sphere_mass"] * (y * y * soft_left + x * x * soft_right)
+    period = 2.0 * np.pi * np.sqrt(square + 0.5 * beam * (soft_left + soft_right))
     return np.where(cases["beam_model"] == BEAM_MODELS.index("rigid"), 0.0, period + hinge)
 
 
@@ -123,7 +152,7 @@ def _statics(cases: Any) -> tuple[Any, Any]:
     The moment of a hinge there under the force is at most the force times the lever.
     """
     clamped, free = SUPPORTS.index("clamped"), SUPPORTS.index("free")
-    ends, place = (cases["support_left"], cases["support_right"]), cases["strike_position"]
+    ends, place = _kinds(cases)[0], cases["strike_position"]
     # x: from the clamped end, or the left one
     x = np.where((ends[1] == clamped) & (ends[0] != clamped), 1.0 - place, place)
     one = (ends[0] == clamped) != (ends[1] == clamped)

@@ -18,13 +18,25 @@ from impactlab.model.cross_section import Section
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI, Quantity, engineering
 from impactlab.model.section import SHAPES, check_section, section_fields
-from impactlab.solver import BEAM_MODELS, COMPLIANCES, LOADS, PRESTRESSES, SUPPORTS, WAVE_MODELS
+from impactlab.solver import (
+    BEAM_MODELS,
+    BENDING_MODELS,
+    COMPLIANCES,
+    LOADS,
+    PRESTRESSES,
+    SUPPORTS,
+    WAVE_MODELS,
+)
 from impactlab.solver.contact import LAWS
 
 MODELS = (*BEAM_MODELS, *wings.models())
 """Names of all models of the beam."""
 MID_SPAN = 0.5
 """Usual place of the strike over the span."""
+MOVING_SUPPORTS = ("free", "elastic")
+"""Supports whose end can be struck."""
+SPRUNG_BEAM = f"{' or '.join(BENDING_MODELS)} with elastic ends: change it, or set other supports"
+"""End of messages on what elastic ends cannot have."""
 OTHER_BEAM = (
     "with ends that are not pinned, or a strike beside mid-span: change it, or set support_left: "
     "pinned, support_right: pinned and strike_position: 0.5"
@@ -111,18 +123,23 @@ class Beam:
         Width over the depth, with shape "profile" alone: distances from the axis over half the
         depth, from 0 to 1, and widths over the largest one, which is `width`; straight in between,
         two of one distance are a step. Kept as text, "0 0.2, 0.8 0.2, 0.8 1, 1 1".
-    support_left, support_right : {"pinned", "clamped", "free"}, default "pinned"
+    support_left, support_right : {"pinned", "clamped", "free", "elastic"}, default "pinned"
         What holds each end: "pinned" (deflection and moment are zero; a roller is the same, without
-        an axial force), "clamped" (deflection and slope are zero), or "free" (moment and shear
-        force are zero). Others than pinned need the beam models "euler_bernoulli", "elastic" or
-        "timoshenko".
+        an axial force), "clamped" (deflection and slope are zero), "free" (moment and shear force
+        are zero) or "elastic" (springs). Others than pinned need the beam models "euler_bernoulli",
+        "elastic" or "timoshenko", elastic ones one of the first two.
+    stiffness_left, stiffness_right : Quantity, default 0
+        Shear force over the deflection at an elastic end, in N/m.
+    rotational_stiffness_left, rotational_stiffness_right : Quantity, default 0
+        Moment over the slope at an elastic end, in N m (per rad).
 
     Raises
     ------
     ValueError
         If a length is not finite and positive, the depth not below the span, the shear coefficient
-        not in (0, 1], shape or a support unknown, or the material is not a `Material`; if a shape
-        lacks a thickness, cannot have it, or is round and not as wide as deep.
+        not in (0, 1], shape or a support unknown, a stiffness negative, an elastic support without
+        any, or the material is not a `Material`; if a shape lacks a thickness, cannot have it, or
+        is round and not as wide as deep.
 
     Examples
     --------
@@ -143,6 +160,10 @@ class Beam:
     profile: Any = None
     support_left: str = "pinned"
     support_right: str = "pinned"
+    stiffness_left: SI[float] = SI("N m-1", 0.0)
+    stiffness_right: SI[float] = SI("N m-1", 0.0)
+    rotational_stiffness_left: SI[float] = SI("N m", 0.0)
+    rotational_stiffness_right: SI[float] = SI("N m", 0.0)
 
     def __post_init__(self) -> None:
         instance("Beam", "material", self.material, Material)
@@ -155,8 +176,8 @@ class Beam:
             message = "must be in (0, 1]; 5/6 holds for a rectangle"
             require(k <= 1, "Beam", "shear_coefficient", self.shear_coefficient, message)
         check_section(self)
-        one_of("Beam", "support_left", self.support_left, SUPPORTS)
-        one_of("Beam", "support_right", self.support_right, SUPPORTS)
+        for side in ("left", "right"):
+            _check_end(self, side)
 
     @property
     def section(self) -> Section:
@@ -207,6 +228,19 @@ class Beam:
         """
         stiffness: float = self.section.bending_stiffness(self.material.youngs_modulus)
         return stiffness
+
+
+def _check_end(beam: Beam, side: str) -> None:
+    """Raise ValueError unless the end has a known support, and an elastic one a spring."""
+    support = one_of("Beam", f"support_{side}", getattr(beam, f"support_{side}"), SUPPORTS)
+    springs = 0.0
+    for field in (f"stiffness_{side}", f"rotational_stiffness_{side}"):
+        spring = number("Beam", field, getattr(beam, field))
+        require(spring >= 0, "Beam", field, spring, "must not be negative")
+        springs = springs + spring
+    message = f"needs a spring: set stiffness_{side} or rotational_stiffness_{side}"
+    sprung = np.greater(springs, 0.0) | np.not_equal(support, "elastic")
+    require(sprung, "Beam", f"support_{side}", support, message)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -285,10 +319,12 @@ class Impact:
         one_of("Impact", "contact_compliance", self.contact_compliance, COMPLIANCES)
         one_of("Impact", "contact_prestress", self.contact_prestress, PRESTRESSES)
         place, beam = number("Impact", "strike_position", self.strike_position), self.beam
-        on_end = np.equal(place, 0.0) & np.equal(beam.support_left, "free")
-        on_end |= np.equal(place, 1.0) & np.equal(beam.support_right, "free")
+        on_end = np.equal(place, 0.0) & np.isin(beam.support_left, MOVING_SUPPORTS)
+        on_end |= np.equal(place, 1.0) & np.isin(beam.support_right, MOVING_SUPPORTS)
         on_beam = np.greater(place, 0.0) & np.less(place, 1.0) | on_end
-        message = "must be a share of the span above 0 and below 1, or the place of a free end"
+        message = (
+            "must be a share of the span above 0 and below 1, or the place of a free or elastic end"
+        )
         require(on_beam, "Impact", "strike_position", place, message)
         moves = np.isin(self.beam_model, WAVE_MODELS)
         message = f"must be {' or '.join(WAVE_MODELS)} {OTHER_BEAM}"
@@ -296,6 +332,9 @@ class Impact:
         message = f"must be {' or '.join(BEAM_MODELS)} {OTHER_SECTION}"
         sound = np.isin(self.beam_model, BEAM_MODELS) | np.equal(beam.shape, "rectangle")
         require(sound, "Impact", "beam_model", self.beam_model, message)
+        sprung = np.equal(beam.support_left, "elastic") | np.equal(beam.support_right, "elastic")
+        sound = np.isin(self.beam_model, BENDING_MODELS) | ~sprung
+        require(sound, "Impact", "beam_model", self.beam_model, f"must be {SPRUNG_BEAM}")
 
     def _repr_html_(self) -> str:
         """Return a table of all parameters for notebooks, with units."""

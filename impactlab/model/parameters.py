@@ -55,6 +55,10 @@ _MATERIAL = (
     ("rate_sensitivity", "1", "Johnson-Cook rate coefficient"),
     ("reference_rate", "s-1", "Johnson-Cook reference strain rate"),
 )
+_SPRINGS = (
+    ("", "N m-1", "stiffness"),
+    ("rotational_", "N m", "rotational stiffness"),
+)
 _ROWS = (
     ("velocity", "m s-1", "impact velocity", "impact.velocity"),
     ("gravity", "m s-2", "gravity on the sphere", "impact.gravity"),
@@ -72,6 +76,16 @@ _ROWS = (
     ("strike_position", "1", "place of the strike over the span", "impact.strike_position"),
     ("support_left", "1", "left support of the beam", "impact.beam.support_left"),
     ("support_right", "1", "right support of the beam", "impact.beam.support_right"),
+    *(
+        (
+            f"{kind}stiffness_{side}",
+            units,
+            f"{text} of the {side} support",
+            f"impact.beam.{kind}stiffness_{side}",
+        )
+        for kind, units, text in _SPRINGS
+        for side in ("left", "right")
+    ),
     ("beam_span", "m", "span of the beam", "impact.beam.span"),
     ("beam_width", "m", "width of the beam", "impact.beam.width"),
     ("beam_depth", "m", "depth of the beam", "impact.beam.depth"),

@@ -13,7 +13,7 @@ LUMPED_MODELS = BEAM_MODELS[3:]
 """Those that move as one mass."""
 SHAPES = ("rectangle", "box", "tube", "circle", "i", "profile")
 """Names of the shapes of the section (model/section.py); the index is the kernels' switch."""
-SUPPORTS = ("pinned", "clamped", "free")
+SUPPORTS = ("pinned", "clamped", "free", "elastic")
 """What holds an end of the beam; the index is the kernels' switch."""
 LOADS = ("point", "contact_patch")
 """Where the contact force acts on the beam; the index is the kernels' switch."""

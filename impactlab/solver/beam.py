@@ -4,8 +4,10 @@ Deflection is positive downwards. The nodes from 2 to `last` are moved, `mid` am
 struck one, and arrays have last + 3 entries: two nodes beyond either end set the conditions there
 (mirror()). A pinned end (w = M = 0) lies on the first node beyond, so that no moved node does
 without its neighbours; a clamped one (w = w_x = 0) on the last moved node, which is put back and
-whose section bends; a free one (M = Q = 0) there, too, with half a spacing's mass. These conditions
-make the energies below sums over the nodes, of which an end has half its share.
+whose section bends; a free one (M = Q = 0) there, too, with half a spacing's mass. An elastic one
+is a free one with springs against deflection and rotation; half a spacing beside it stays elastic,
+in series with the spring. These conditions make the energies below sums over the nodes, of which an
+end has half its share.
 
 A beam of equal ends that is struck in its middle is solved from the left end to mid-span: another
 kind of end, symmetric, where w is even. That a half is solved is known here alone: to make_grid, to
@@ -50,7 +52,8 @@ class BeamGrid(NamedTuple):
     moments, stiffness = factor EI/dx^2 of a fourth difference of w, push = dt^2/(mu dx) of a
     force. last: index of the last node moved; first, stop: those from first to before stop are no
     ends. left, right: kinds of the ends. copies: number of nodes of the whole beam that such a node
-    stands for.
+    stands for. Of elastic ends: turn = k_r/(k_r + 2 EI/dx) of the spring against rotation, lift =
+    2 k_t dx^3/EI of that against deflection.
     """
 
     mid: int
@@ -67,9 +70,13 @@ class BeamGrid(NamedTuple):
     left: int
     right: int
     copies: float
+    turn_left: float
+    turn_right: float
+    lift_left: float
+    lift_right: float
 
 
-PINNED, CLAMPED, FREE = (SUPPORTS.index(name) for name in ("pinned", "clamped", "free"))
+PINNED, CLAMPED, FREE, SPRUNG = (SUPPORTS.index(name) for name in SUPPORTS)
 SYMMETRIC = len(SUPPORTS)
 """Kinds of ends; symmetric is mid-span, where a half beam ends."""
 COPIES = 2.0
@@ -94,19 +101,27 @@ def make_grid(
     left: int = PINNED,
     right: int = PINNED,
     struck: int = -1,
+    k_left: float = 0.0,
+    k_right: float = 0.0,
+    turn_left: float = 0.0,
+    turn_right: float = 0.0,
 ) -> BeamGrid:
     """Return the grid of a beam with so many nodes, and what follows from it.
 
-    struck: the node that is, counted from 0 at the left end; -1: the middle one.
+    struck: the node that is, counted from 0 at the left end; -1: the middle one. k_left, k_right
+    (N/m), turn_left, turn_right (N m): springs of elastic ends against deflection and rotation.
     """
     middle = half_spacings(nodes)
     struck = middle if struck < 0 else struck
     halved = left == right and struck == middle and 2 * middle == nodes - 1
+    if left == SPRUNG:
+        halved = halved and k_left == k_right and turn_left == turn_right
     start = 1 if left == PINNED else 2  # index of the left end
     right = SYMMETRIC if halved else right
     end = start + (middle if halved else nodes - 1)
     last = end - 1 if right == PINNED else end
     factor = dt**2 / (mu * dx**2)
+    lift = 2.0 * dx**3 / EI
     return BeamGrid(
         start + struck,
         dx,
@@ -122,6 +137,10 @@ def make_grid(
         left,
         right,
         COPIES if halved else 1.0,
+        turn_left / (turn_left + 2.0 * EI / dx),
+        turn_right / (turn_right + 2.0 * EI / dx),
+        lift * k_left,
+        lift * k_right,
     )
 
 
@@ -238,41 +257,37 @@ def mirror(w: Array, now: int, u: Array, grid: BeamGrid) -> None:
     if grid.left == PINNED:
         w[after, 0] = -w[after, 2]
     else:
-        _set_end(w[after], u, 2, 1, grid.left)
+        _set_end(w[after], u, 2, 1, grid.left, grid.turn_left, grid.lift_left)
     if grid.right == SYMMETRIC:
         w[after, last + 1] = w[after, last - 1]
         w[after, last + 2] = w[after, last - 2]
     elif grid.right == PINNED:
         w[after, last + 2] = -w[after, last]
     else:
-        _set_end(w[after], u, last, -1, grid.right)
+        _set_end(w[after], u, last, -1, grid.right, grid.turn_right, grid.lift_right)
 
 
 @compiled
-def _set_end(w: Array, u: Array, end: int, inward: int, kind: int) -> None:
-    """Set the nodes at and beyond an end that is clamped or free; inward: 1 or -1.
+def _set_end(
+    w: Array, u: Array, end: int, inward: int, kind: int, turn: float, lift: float
+) -> None:
+    """Set the nodes at and beyond an end that is not pinned; inward: 1 or -1.
 
-    Clamped, w is even about it. Free, the moment is zero there and odd about it; then the moment's
-    second difference is that of a node with half the mass.
+    Clamped, w is even about it. Free, the moment is zero there and even about it; then the moment's
+    second difference is that of a node with half the mass. Elastic, the moment is the spring's, and
+    the outer node adds the force of the other.
     """
     beside, inside = w[end + inward], w[end + 2 * inward]
     if kind == CLAMPED:
         w[end] = u[end] = 0.0
         w[end - inward], w[end - 2 * inward] = beside, inside
+    elif kind == SPRUNG:
+        beyond = 2.0 * (w[end] - beside) + 2.0 * turn * (beside - w[end])
+        w[end - inward] = beside + beyond
+        w[end - 2 * inward] = inside + 2.0 * beyond + lift * w[end]
     else:
         w[end - inward] = 2.0 * w[end] - beside
         w[end - 2 * inward] = 4.0 * (w[end] - beside) + inside
-
-
-@inlined
-def mirror_across(s: Array, rate: Array, grid: BeamGrid) -> None:
-    """Set the curvature across the width at and beyond the ends: it is 0 where they are held."""
-    if grid.left == CLAMPED:
-        s[2] = rate[2] = 0.0
-    if grid.right == CLAMPED:
-        s[grid.last] = rate[grid.last] = 0.0
-    elif grid.right == SYMMETRIC:
-        s[grid.last + 1] = s[grid.last - 1]
 
 
 @inlined
@@ -286,14 +301,6 @@ def mirror_rotation(psi: Array, grid: BeamGrid) -> None:
         psi[1] = psi[2] if grid.left == FREE else -psi[2]
     if grid.right != PINNED:
         psi[grid.last] = psi[grid.last - 1] if grid.right == FREE else -psi[grid.last - 1]
-
-
-@inlined
-def mirror_shear(Q: Array, grid: BeamGrid) -> None:
-    """Set the shear forces beyond the ends, as mirror_rotation; odd, but where nothing moves."""
-    Q[grid.first - 2] = -Q[grid.first - 1]
-    if grid.right != PINNED:
-        Q[grid.last] = -Q[grid.last - 1]
 
 
 @compiled
@@ -361,6 +368,12 @@ def bending_energy(beam: BeamState, M_0: Array, EI: float, grid: BeamGrid, now: 
     return grid.dx * _bending_sum(beam.w, now, M_0, EI, grid)
 
 
+@compiled
+def _springs(w: float, beside: float, turn: float, lift: float) -> float:
+    """Return the energy of an elastic end's springs, over EI/(2 dx^3), in m2."""
+    return 0.5 * lift * w * w + 2.0 * turn * (beside - w) * (beside - w)
+
+
 @summing
 def _bending_sum(w: Array, now: int, M_0: Array, EI: float, grid: BeamGrid) -> float:
     total, share, last = 0.0, 0.5, grid.last
@@ -369,6 +382,12 @@ def _bending_sum(w: Array, now: int, M_0: Array, EI: float, grid: BeamGrid) -> f
         total += kappa * (0.5 * EI * kappa - M_0[i])
     if grid.right == SYMMETRIC:
         total, share = COPIES * total, 0.5 * COPIES
+    if grid.left == SPRUNG:
+        springs = _springs(w[now, 2], w[now, 3], grid.turn_left, grid.lift_left)
+        total += share * EI * grid.per_dx2 * grid.per_dx2 * springs
+    if grid.right == SPRUNG:
+        springs = _springs(w[now, last], w[now, last - 1], grid.turn_right, grid.lift_right)
+        total += share * EI * grid.per_dx2 * grid.per_dx2 * springs
     if grid.left == CLAMPED:
         kappa = 2.0 * w[now, 3] * grid.per_dx2
         total += share * kappa * (0.5 * EI * kappa - M_0[2])

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver.beam import BeamGrid, BeamState, add_moment, copies
+from impactlab.solver.beam import SPRUNG, BeamGrid, BeamState, add_moment, copies
 from impactlab.solver.jit import allocating, compiled, summing
 from impactlab.solver.section import (
     FAR,
@@ -81,6 +81,14 @@ def rest_plastic_state(plastic: PlasticState, section: FibreSection) -> None:
         for j in range(section.z.size):
             plastic.plastic_strain[i, j] = plastic.peeq[i, j] = 0.0
     plastic.on_tangent[0] = np.uint64(0)
+
+
+@compiled
+def keep_ends_elastic(plastic: PlasticState, grid: BeamGrid) -> None:
+    """Let the section at an elastic end never yield: its spring has the share of it (beam.py)."""
+    for kind, i in ((grid.left, 2), (grid.right, grid.last)):
+        if kind == SPRUNG:
+            plastic.kappa_min[i], plastic.kappa_max[i] = -FAR, FAR
 
 
 @compiled

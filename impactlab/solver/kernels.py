@@ -22,6 +22,7 @@ from impactlab.solver.beam import half_node, make_beam, rest_beam
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.contact.switch import DAMPED
 from impactlab.solver.fibre_plasticity import (
+    keep_ends_elastic,
     make_plastic_state,
     plastic_energy,
     rest_plastic_state,
@@ -47,12 +48,15 @@ def _section_at_rate(case: Record, fibres: Array, room: Room) -> FibreSection:
 def _end_of_alike(cases: Array, start: int) -> int:
     """Return where the cases end that from `start` on need the same memory."""
     stop, first = start + 1, cases[start]
+    last = grid_of(first, 1.0, 1.0, 1.0).last
     while stop < cases.size:
         case = cases[stop]
         if case.nodes != first.nodes or case.points != first.points:
             break
         ends = case.support_left != first.support_left, case.support_right != first.support_right
         if ends[0] or ends[1] or struck_node(case) != struck_node(first):
+            break
+        if grid_of(case, 1.0, 1.0, 1.0).last != last:  # springs alike, or not
             break
         stop += 1
     return stop
@@ -161,6 +165,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
                 grid, steps = discretise(case, pair, section)
                 rest_beam(beam)
                 rest_plastic_state(plastic, section)
+                keep_ends_elastic(plastic, grid)
                 if renew is not None:
                     renew(extra, section, grid)
                 else:

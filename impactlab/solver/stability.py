@@ -4,7 +4,8 @@ Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
     the paper's beam  omega^2 <= 16 (EI)_q/(rho A dx^4) + k_c (1/(rho A dx) + 1/m_s)
                       (physics.md, in the place of the paper's bar-wave limit), at all ends: of the
                       row sums of the curvatures' matrix, a free or clamped end's are smaller; a
-                      free end that is struck has half the mass in the second term
+                      free end that is struck has half the mass in the second term; the stiffest
+                      spring of an elastic end adds 2 k_t/(rho A dx)
     Timoshenko beam   4 (EI)_q/(rho I dx^2) + k G A/(rho I) + 4 k G A/(rho A dx^2) as first term
                       with any ends, too
     strip             beside it (D_s + 4 T/dx^2)/m + 4 nu^2 D_s/(rho I dx^2), and the force's lever
@@ -28,7 +29,7 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.beam import PINNED, BeamGrid, half_spacings, make_grid
+from impactlab.solver.beam import PINNED, SPRUNG, BeamGrid, half_spacings, make_grid
 from impactlab.solver.contact.history import PANELS, Pair, loading_work, pair_curve
 from impactlab.solver.contact.rate import MODULUS, STRAIN
 from impactlab.solver.contact.stronge import yield_indentation
@@ -178,7 +179,9 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
             omega_squared += 4.0 * case.beam_poissons_ratio**2 * D_s / (inertia * dx**2)
             contact += k_c * case.width_lever**2 / (case.width_inertia * dx)
     else:
-        omega_squared = 16.0 * EI / (mu * dx**4)
+        left = case.stiffness_left if case.support_left == SPRUNG else 0.0
+        right = case.stiffness_right if case.support_right == SPRUNG else 0.0
+        omega_squared = 16.0 * EI / (mu * dx**4) + 2.0 * max(left, right) / (mu * dx)
     dt = 2.0 / math.sqrt(omega_squared + contact)
     return _damped(dt, 0.5 * c * contact / k_c * dt)
 
@@ -187,7 +190,19 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
 def grid_of(case: Record, dx: float, dt: float, EI: float) -> BeamGrid:
     """Return the grid of a case's beam, of spacing dx (m) and step dt (s)."""
     ends, struck = (case.support_left, case.support_right), struck_node(case)
-    return make_grid(case.nodes, dx, dt, case.mass_per_length, EI, *ends, struck)
+    return make_grid(
+        case.nodes,
+        dx,
+        dt,
+        case.mass_per_length,
+        EI,
+        *ends,
+        struck,
+        case.stiffness_left,
+        case.stiffness_right,
+        case.rotational_stiffness_left,
+        case.rotational_stiffness_right,
+    )
 
 
 @compiled

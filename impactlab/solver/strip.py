@@ -42,7 +42,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver import timoshenko
-from impactlab.solver.beam import BeamGrid, mirror_across
+from impactlab.solver.beam import CLAMPED, SYMMETRIC, BeamGrid
 from impactlab.solver.contact.axis_lift import axis_lift
 from impactlab.solver.fibre_plasticity import curvature, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
@@ -125,6 +125,17 @@ def _push_back(strip: Strip, sign: float, last: int) -> None:
         M[i] += share * strip.bent[i]
 
 
+@inlined
+def _mirror(s: Array, rate: Array, grid: BeamGrid) -> None:
+    """Set the curvature across the width at and beyond the ends: it is 0 where they are held."""
+    if grid.left == CLAMPED:
+        s[2] = rate[2] = 0.0
+    if grid.right == CLAMPED:
+        s[grid.last] = rate[grid.last] = 0.0
+    elif grid.right == SYMMETRIC:
+        s[grid.last + 1] = s[grid.last - 1]
+
+
 @vectorised
 def _swing(strip: Strip, push: float, per_dx: float, F: float, grid: BeamGrid) -> None:
     """Move s by one step; push = dt^2/m."""
@@ -136,7 +147,7 @@ def _swing(strip: Strip, push: float, per_dx: float, F: float, grid: BeamGrid) -
     for i in range(np.uint64(2), np.uint64(grid.last + 1)):
         rate[i] += d_rate[i]
         s[i] += rate[i]
-    mirror_across(s, rate, grid)
+    _mirror(s, rate, grid)
 
 
 @summing

@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver.beam import (
+    PINNED,
     BeamGrid,
     BeamState,
     copies,
     mirror,
     mirror_rotation,
-    mirror_shear,
 )
 from impactlab.solver.contact_patch import spread_over_nodes
 from impactlab.solver.euler_bernoulli import deflected
@@ -89,6 +89,14 @@ def bend_sections(
         begin_tangents(beam, now, psi, outside, plastic, section, grid, beam.du, beam.du[:0])
         _moments(shear, plastic, EI, per_dx, grid.last)
     return per_dx
+
+
+@inlined
+def mirror_shear(Q: Array, grid: BeamGrid) -> None:
+    """Set the shear forces beyond the ends, as mirror_rotation; odd, but where nothing moves."""
+    Q[grid.first - 2] = -Q[grid.first - 1]
+    if grid.right != PINNED:
+        Q[grid.last] = -Q[grid.last - 1]
 
 
 @inlined

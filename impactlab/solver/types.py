@@ -52,6 +52,7 @@ CASE = record(
     beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus
     beam_rate_coefficient beam_rate_exponent beam_rate_sensitivity beam_reference_rate courant
     strike_position
+    stiffness_left stiffness_right rotational_stiffness_left rotational_stiffness_right
     compliance bending_compliance stress_along stress_across
     width_stiffness width_inertia width_lever width_twist axis_compliance axis_bending
     """,

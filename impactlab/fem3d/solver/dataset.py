@@ -123,6 +123,7 @@ IMPACT_PARAMETERS = [
     if entry.path[0] == "impact"
     and name not in ("contact", *TIMOSHENKO_OPTIONS, "beam_model", "load", "shear_coefficient")
     and name not in ("strike_position", "support_left", "support_right", *SECTION)
+    and "stiffness_" not in name
 ]
 """Parameters of an impact, without those of the beam models alone."""
 

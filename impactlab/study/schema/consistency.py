@@ -16,7 +16,7 @@ from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
 from impactlab.model.case_table import between_nodes
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
-from impactlab.model.impact import MID_SPAN, OTHER_BEAM
+from impactlab.model.impact import MID_SPAN, OTHER_BEAM, SPRUNG_BEAM
 from impactlab.model.parameters import PARAMETERS, SECTION, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.model.quantities import shown
@@ -212,6 +212,8 @@ def _other_beams(file: StudyFile, models: set[Value]) -> Reasons:
     if models - set(WAVE_MODELS):
         reason = f"must be {' or '.join(WAVE_MODELS)} {OTHER_BEAM}"
         yield key_of("beam_model", sampling), reason
+    elif "elastic" in supports and models - set(BENDING_MODELS):
+        yield key_of("beam_model", sampling), f"must be {SPRUNG_BEAM}"
 
 
 def _further_models(file: StudyFile) -> Reasons:

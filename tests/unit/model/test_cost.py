@@ -28,6 +28,10 @@ PAPER: dict[str, Any] = {
     "scheme": SCHEMES.index("leapfrog"),
     "support_left": 0,
     "support_right": 0,
+    "stiffness_left": 0.0,
+    "stiffness_right": 0.0,
+    "rotational_stiffness_left": 0.0,
+    "rotational_stiffness_right": 0.0,
     "strike_position": 0.5,
     "beam_model": BEAM_MODELS.index("euler_bernoulli"),
 }
