@@ -25,6 +25,8 @@ KINDS: dict[str, tuple[str, str]] = {
     "Pa": ("a stress", "345 MPa"),
     "s": ("a time", "12 ms"),
     "s-1": ("a rate", "40.4 s-1"),
+    "N m-1": ("a stiffness", "2 kN/mm"),
+    "N m": ("a rotational stiffness", "5 kN m"),
     "1": ("a pure number", "0.3"),
 }
 """SI units (UDUNITS spelling), with the kind of quantity and an example."""

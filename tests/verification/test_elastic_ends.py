@@ -113,12 +113,12 @@ def solved(impact, scheme, nodes):
 @pytest.mark.parametrize("springs", SPRINGS)
 def test_both_schemes_have_one_limit_and_keep_the_energy(springs, place):
     impact = on_springs(springs, place)
-    leapfrog, modal = (solved(impact, *grid) for grid in (("leapfrog", 201), ("modal", 121)))
+    leapfrog, modal = (solved(impact, *grid) for grid in (("leapfrog", 401), ("modal", 121)))
     for name, rel in (("peak_force", 5e-3), ("impulse", 0.02), ("plastic_dissipation", 0.03)):
         assert modal[name].item() == pytest.approx(leapfrog[name].item(), rel=rel)
     size = np.abs(leapfrog.midspan_deflection).max().item()
     difference = modal.midspan_deflection.values - leapfrog.midspan_deflection.values
-    assert np.abs(difference).max() < 0.01 * size
+    assert np.abs(difference).max() < 0.015 * size
     assert leapfrog.energy_error.item() < 1e-4
     assert modal.energy_error.item() < 1e-3
     profile = modal.deflection.values - np.interp(modal.x, leapfrog.x, leapfrog.deflection)

@@ -44,6 +44,11 @@ REFUSED = {
     ("Beam", "profile"): ["0 1, 1 1", [(0, 1), (1, 1)], "", 5],
     ("Beam", "support_left"): ["roller", "Pinned", "", None, 0],
     ("Beam", "support_right"): ["fixed", "Clamped", "", None, 1],
+    **{
+        ("Beam", f"{kind}stiffness_{side}"): NEGATIVE
+        for kind in ("", "rotational_")
+        for side in ("left", "right")
+    },
     ("Impact", "velocity"): UNREAL,
     ("Impact", "gravity"): NEGATIVE,
     ("Impact", "contact"): ["hooke", "Hertz", "", None, 0],
