@@ -89,7 +89,7 @@ def test_other_ends_and_places_are_refused_where_nothing_solves_them(refused, re
     places = {"sampling.parameters": {"strike_position": [0.25, 0.33]}}
     refused(grid(coarse | places), key, "0.33 lies between two of the 41 nodes: take 0.325 or 0.35")
     tip = {"sampling.parameters": {"strike_position": [0.0, 0.5]}}
-    refused(grid(coarse | tip), key, "or the place of a free end")
+    refused(grid(coarse | tip), key, "or the place of a free or elastic end")
     read(grid(coarse | tip | {"impact.beam": {"support_left": "free"}}))
     clamped = coarse | {"sampling.parameters": {"support_left": ["pinned", "clamped"]}}
     read(grid(clamped))
