@@ -21,10 +21,10 @@ from .methods.pawn import Pawn as Pawn
 from .methods.rbd_fast import RbdFast as RbdFast
 from .methods.regression import Regression as Regression
 from .methods.sobol import Sobol as Sobol
+from .model.bodies import Beam as Beam
+from .model.bodies import Sphere as Sphere
 from .model.discretisation import Discretisation as Discretisation
-from .model.impact import Beam as Beam
 from .model.impact import Impact as Impact
-from .model.impact import Sphere as Sphere
 from .model.impact import corrected_impact as corrected_impact
 from .model.impact import paper_impact as paper_impact
 from .model.material import Material as Material

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from impactlab import wings
+from impactlab.model.bodies import Beam
 from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import case_fields
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Beam, Impact
+from impactlab.model.impact import Impact
 from impactlab.model.parameters import (
     PARAMETERS,
     PROFILE_FIXED,

@@ -6,25 +6,22 @@ hold SI numbers.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from impactlab import wings
+from impactlab.model.bodies import Beam, Sphere
 from impactlab.model.checks import instance, number, one_of, positive, require
-from impactlab.model.cross_section import Section
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI, Quantity, engineering
-from impactlab.model.section import SHAPES, check_section, section_fields
 from impactlab.solver import (
     BEAM_MODELS,
     BENDING_MODELS,
     COMPLIANCES,
     LOADS,
     PRESTRESSES,
-    SUPPORTS,
     WAVE_MODELS,
 )
 from impactlab.solver.contact import LAWS
@@ -44,203 +41,6 @@ OTHER_BEAM = (
 """Ends of messages on what other beams cannot have."""
 OTHER_SECTION = "with a section that is no rectangle: change it, or set shape: rectangle"
 """The same, of other sections."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Sphere:
-    """A solid sphere.
-
-    Parameters
-    ----------
-    radius : Quantity
-        Radius, in m.
-    material : Material
-        Metal of the sphere.
-    mass : Quantity, optional
-        Mass, in kg; by default density times volume.
-
-    Raises
-    ------
-    ValueError
-        If radius or mass is not finite and positive, or the material is not a `Material`.
-
-    Examples
-    --------
-    >>> from dataclasses import replace
-    >>> replace(il.paper_impact().sphere, radius="3 cm").total_mass
-    0.8821592171280138
-    """
-
-    radius: SI[float] = SI("m")
-    material: Material
-    mass: SI[float | None] = SI("kg", None)
-
-    def __post_init__(self) -> None:
-        instance("Sphere", "material", self.material, Material)
-        positive("Sphere", "radius", self.radius)
-        if self.mass is not None:
-            positive("Sphere", "mass", self.mass)
-
-    @property
-    def total_mass(self) -> float:
-        """Mass in kg: the stated one, else density times volume.
-
-        Returns
-        -------
-        float
-            Mass, in kg.
-        """
-        if self.mass is not None:
-            return self.mass
-        # not **3: numpy's power of a column is not Python's to the last bit
-        cube = self.radius * self.radius * self.radius
-        mass: float = self.material.density * 4.0 / 3.0 * math.pi * cube
-        return mass
-
-
-@dataclass(frozen=True, kw_only=True)
-class Beam:
-    """A beam, held at both ends or at one.
-
-    Parameters
-    ----------
-    span : Quantity
-        Distance of the ends, in m.
-    width, depth : Quantity
-        Side of the section, across and along the velocity, in m.
-    material : Material
-        Metal of the beam.
-    shear_coefficient : Quantity, optional
-        Shear force over G A times the shear angle, of Timoshenko's beam alone; by default that of
-        the shape: 5/6 of a rectangle, Cowper's of the others (model/shapes.py).
-    shape : {"rectangle", "box", "tube", "circle", "i", "profile"}, default "rectangle"
-        Shape of the section. Tubes and circles are round: their width and depth are the diameter.
-    wall_thickness : Quantity, optional
-        Thickness of the wall of a box or a tube, in m; these need it, and other shapes have none.
-    flange_thickness, web_thickness : Quantity, optional
-        Thickness of each flange, and of the web, of an I-section, in m; it needs both.
-    profile : str or sequence of pairs of float, optional
-        Width over the depth, with shape "profile" alone: distances from the axis over half the
-        depth, from 0 to 1, and widths over the largest one, which is `width`; straight in between,
-        two of one distance are a step. Kept as text, "0 0.2, 0.8 0.2, 0.8 1, 1 1".
-    support_left, support_right : {"pinned", "clamped", "free", "elastic"}, default "pinned"
-        What holds each end: "pinned" (deflection and moment are zero; a roller is the same, without
-        an axial force), "clamped" (deflection and slope are zero), "free" (moment and shear force
-        are zero) or "elastic" (springs). Others than pinned need the beam models "euler_bernoulli",
-        "elastic" or "timoshenko", elastic ones one of the first two.
-    stiffness_left, stiffness_right : Quantity, default 0
-        Shear force over the deflection at an elastic end, in N/m.
-    rotational_stiffness_left, rotational_stiffness_right : Quantity, default 0
-        Moment over the slope at an elastic end, in N m (per rad).
-
-    Raises
-    ------
-    ValueError
-        If a length is not finite and positive, the depth not below the span, the shear coefficient
-        not in (0, 1], shape or a support unknown, a stiffness negative, an elastic support without
-        any, or the material is not a `Material`; if a shape lacks a thickness, cannot have it, or
-        is round and not as wide as deep.
-
-    Examples
-    --------
-    >>> steel = il.paper_impact().beam.material
-    >>> il.Beam(span="78 cm", width="6 cm", depth="28 mm", material=steel).depth
-    0.028
-    """
-
-    span: SI[float] = SI("m")
-    width: SI[float] = SI("m")
-    depth: SI[float] = SI("m")
-    material: Material
-    shear_coefficient: SI[float | None] = SI("1", None)
-    shape: str = "rectangle"
-    wall_thickness: SI[float | None] = SI("m", None)
-    flange_thickness: SI[float | None] = SI("m", None)
-    web_thickness: SI[float | None] = SI("m", None)
-    profile: Any = None
-    support_left: str = "pinned"
-    support_right: str = "pinned"
-    stiffness_left: SI[float] = SI("N m-1", 0.0)
-    stiffness_right: SI[float] = SI("N m-1", 0.0)
-    rotational_stiffness_left: SI[float] = SI("N m", 0.0)
-    rotational_stiffness_right: SI[float] = SI("N m", 0.0)
-
-    def __post_init__(self) -> None:
-        instance("Beam", "material", self.material, Material)
-        for field in ("span", "width", "depth"):
-            positive("Beam", field, getattr(self, field))
-        below = f"must be below the span ({self.span!r} m)"
-        require(self.depth < self.span, "Beam", "depth", self.depth, below)
-        if self.shear_coefficient is not None:
-            k = positive("Beam", "shear_coefficient", self.shear_coefficient)
-            message = "must be in (0, 1]; 5/6 holds for a rectangle"
-            require(k <= 1, "Beam", "shear_coefficient", self.shear_coefficient, message)
-        check_section(self)
-        for side in ("left", "right"):
-            _check_end(self, side)
-
-    @property
-    def section(self) -> Section:
-        """Section of the beam, which knows its area, second moment and fibres.
-
-        Returns
-        -------
-        Section
-            The section (model/section.py, model/shapes.py).
-        """
-        sizes = {field: getattr(self, field) for field in section_fields(self.shape)}
-        return SHAPES[self.shape](**sizes)
-
-    @property
-    def shear_correction(self) -> float:
-        """Shear coefficient: the stated one, else that of the shape.
-
-        Returns
-        -------
-        float
-            k, of 1.
-        """
-        if self.shear_coefficient is not None:
-            return self.shear_coefficient
-        k: float = self.section.shear_coefficient(self.material.poissons_ratio)
-        return k
-
-    @property
-    def mass_per_length(self) -> float:
-        """Density times area of the section.
-
-        Returns
-        -------
-        float
-            rho A, in kg/m.
-        """
-        mass: float = self.section.mass_per_length(self.material.density)
-        return mass
-
-    @property
-    def bending_stiffness(self) -> float:
-        """Bending stiffness of the exact section, not that of an integration rule.
-
-        Returns
-        -------
-        float
-            EI, in N m2.
-        """
-        stiffness: float = self.section.bending_stiffness(self.material.youngs_modulus)
-        return stiffness
-
-
-def _check_end(beam: Beam, side: str) -> None:
-    """Raise ValueError unless the end has a known support, and an elastic one a spring."""
-    support = one_of("Beam", f"support_{side}", getattr(beam, f"support_{side}"), SUPPORTS)
-    springs = 0.0
-    for field in (f"stiffness_{side}", f"rotational_stiffness_{side}"):
-        spring = number("Beam", field, getattr(beam, field))
-        require(spring >= 0, "Beam", field, spring, "must not be negative")
-        springs = springs + spring
-    message = f"needs a spring: set stiffness_{side} or rotational_stiffness_{side}"
-    sprung = np.greater(springs, 0.0) | np.not_equal(support, "elastic")
-    require(sprung, "Beam", f"support_{side}", support, message)
 
 
 @dataclass(frozen=True, kw_only=True)

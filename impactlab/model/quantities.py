@@ -239,6 +239,8 @@ UNITS: dict[str, Scale] = {
     "kPa": (3, -1, 1, -2),
     "MPa": (6, -1, 1, -2),
     "GPa": (9, -1, 1, -2),
+    "N": (0, 1, 1, -2),
+    "kN": (3, 1, 1, -2),
 }
 """The units that studies mostly use, so that pint, slow to load, is rarely needed."""
 

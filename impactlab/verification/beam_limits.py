@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from impactlab.model.bodies import Beam
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Beam, paper_impact
+from impactlab.model.impact import paper_impact
 from impactlab.simulate import run_dataset
 from impactlab.verification.cases import elastic, slimmer
 from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, check, rms_error

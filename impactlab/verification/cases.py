@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from impactlab.model.bodies import Beam, Sphere
 from impactlab.model.case_table import case_table
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Beam, Impact, Sphere, paper_impact
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.material import Material
 from impactlab.solve import fibre_section
 from impactlab.solver.beam import BeamGrid

@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from impactlab.model.bodies import Beam, Sphere
 from impactlab.model.case_table import case_table
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Beam, Impact, Sphere, paper_impact
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.material import Material
 from impactlab.simulate import run_dataset
 from impactlab.solve import fibre_section

@@ -15,7 +15,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from impactlab.model.impact import Beam, paper_impact
+from impactlab.model.bodies import Beam
+from impactlab.model.impact import paper_impact
 from impactlab.paper.statements.resolution import READINGS_OF_P
 from impactlab.paper.statements.statement import (
     Assessment,

@@ -25,7 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from impactlab.model.impact import Beam
+from impactlab.model.bodies import Beam
 from impactlab.types import Floats
 
 

@@ -19,7 +19,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from impactlab.model.impact import Beam
+from impactlab.model.bodies import Beam
 from impactlab.model.material import Material
 from impactlab.types import Floats
 

@@ -20,7 +20,8 @@ import math
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from impactlab.model.impact import Beam, Impact
+from impactlab.model.bodies import Beam
+from impactlab.model.impact import Impact
 from impactlab.verification.solutions import bending
 
 _FAR = 1e6  # curvature, over the yield curvature, beyond which a section counts as a hinge

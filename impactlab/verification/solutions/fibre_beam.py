@@ -18,7 +18,8 @@ import numpy as np
 from scipy.linalg import solveh_banded
 from scipy.sparse import csr_array
 
-from impactlab.model.impact import Beam, Impact
+from impactlab.model.bodies import Beam
+from impactlab.model.impact import Impact
 from impactlab.types import Floats
 from impactlab.verification.solutions import quadrature
 from impactlab.verification.solutions.contact_laws import LawOnHalfSpace, law_on_half_space

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import fresnel
 
-from impactlab.model.impact import Beam
+from impactlab.model.bodies import Beam
 from impactlab.types import Floats
 
 

@@ -29,7 +29,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 
-from impactlab.model.impact import Beam, Impact
+from impactlab.model.bodies import Beam
+from impactlab.model.impact import Impact
 from impactlab.types import Floats
 from impactlab.verification.solutions import hertz
 

@@ -63,7 +63,7 @@ def test_known_units_are_what_pint_says(target):
     """To the last bit, and with the same dimension."""
     compared = 0
     names = [*UNITS, *(f"{one}/{other}" for one, other in product(UNITS, UNITS)), "g/cm3", "m/s2"]
-    names.append("s-1")
+    names += ["s-1", "N m", "kN m"]
     for name, number in product(names, ("1", "27.8", "-.3e-7", "123456789.123456789")):
         try:
             expected = quantities._by_pint(Decimal(number), name, target)

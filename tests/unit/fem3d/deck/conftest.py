@@ -7,7 +7,8 @@ import pytest
 
 from impactlab.fem3d.deck import write_deck
 from impactlab.fem3d.solver import quarter_mesh
-from impactlab.model.impact import Beam, paper_impact
+from impactlab.model.bodies import Beam
+from impactlab.model.impact import paper_impact
 
 
 @pytest.fixture(scope="session")

@@ -10,7 +10,8 @@ import whole_sphere
 
 from impactlab.fem3d.deck import write_deck
 from impactlab.fem3d.solver import quarter_mesh
-from impactlab.model.impact import Beam, Impact, Sphere, paper_impact
+from impactlab.model.bodies import Beam, Sphere
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.verification.solutions import hertz
 
 

@@ -8,7 +8,8 @@ import pytest
 import whole_sphere
 
 from impactlab.fem3d.solver import quarter_mesh, solve, solve_on
-from impactlab.model.impact import Beam, Impact, Sphere, paper_impact
+from impactlab.model.bodies import Beam, Sphere
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.material import Material
 from impactlab.verification.solutions import beam_modes, hertz, modal
 

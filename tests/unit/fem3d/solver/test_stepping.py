@@ -9,7 +9,8 @@ from impactlab.fem3d.solver.impulses import SHAPE
 from impactlab.fem3d.solver.march import March
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, Mesh, brick
 from impactlab.fem3d.solver.system import MOST_THREADS, ForceAssembly, Group, System, ThreadPool
-from impactlab.model.impact import Beam, Impact, Sphere
+from impactlab.model.bodies import Beam, Sphere
+from impactlab.model.impact import Impact
 from impactlab.model.material import Material
 
 

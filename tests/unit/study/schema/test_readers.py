@@ -9,8 +9,9 @@ import pytest
 from impactlab.fem3d.wing import SIZES
 from impactlab.methods.grid import Grid
 from impactlab.methods.sobol import Sobol
+from impactlab.model.bodies import Beam, Sphere
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Beam, Impact, Sphere, paper_impact
+from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.material import Material
 from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.study.schema.declarations import Analysis, ImpactStudy, Store, Verification
