@@ -7,7 +7,7 @@ import xarray as xr
 from impactlab.analysis import ANALYSES
 from impactlab.fem3d.wing import SIZES
 from impactlab.model.impact import paper_impact
-from impactlab.model.parameters import PARAMETERS
+from impactlab.model.parameters import PARAMETERS, SECTION
 from impactlab.study.design import doubled
 from impactlab.study.engine import Engine
 from impactlab.study.estimate import estimate
@@ -57,7 +57,8 @@ def test_a_grid_has_a_dimension_for_each_varied_parameter_and_scalars(designed):
     assert grid["velocity"].attrs == {"units": "m s-1", "long_name": "impact velocity"}
     assert not grid.data_vars
     scalars = {name for name, coordinate in grid.coords.items() if coordinate.ndim == 0}
-    assert scalars == PARAMETERS.keys() - {"rule", "velocity", "sphere_mass", *SIZES} | {"duration"}
+    absent = {"rule", "velocity", "sphere_mass", *SIZES, *SECTION} - {"beam_shape"}
+    assert scalars == PARAMETERS.keys() - absent | {"duration"}
     assert grid["nodes"].item() == 51
     assert grid["duration"].item() == 0.012
     assert grid["beam_depth"].item() == paper_impact().beam.depth

@@ -53,7 +53,7 @@ def test_shear_stiffness_of_the_papers_beam():
     )
     # tau = 1.5 (1 - xi^2) of the mean: its energy over that of the mean is 1/k.
     energy, _ = quad(lambda xi: 0.5 * (1.5 * (1 - xi**2)) ** 2, -1, 1)
-    assert BEAM.shear_coefficient == pytest.approx(1 / energy)
+    assert BEAM.shear_correction == pytest.approx(1 / energy)
 
 
 def test_static_deflection_by_the_unit_load():
