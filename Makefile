@@ -42,24 +42,29 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete \
   --max-jobs-per-timespan 100/5s
 
-.PHONY: study paper all test lint pytest long chaos kratos oldest docs stored site bench scaling mutants coverage constraints unlock clean
+.PHONY: writable study paper all test lint pytest long chaos kratos oldest docs stored site bench scaling mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 STOPPED := echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
   echo 'What is done is kept: the same command goes on from there (`make unlock` first, if it says locked).'; \
   exit 1
 
+# Environment, results and Snakemake's notes go into this folder.
+writable:
+	@test -w . || { echo 'You cannot write to $(CURDIR), where results and environment go.'; \
+	  echo 'Clone it into a folder of your own: git clone $(CURDIR) ~/impactlab'; exit 1; }
+
 # All kernels at once: they share what they have in common, and checks need them all.
-study: $(MADE)-workflow
+study: writable $(MADE)-workflow
 	@$(IN_VENV) impactlab compile
 	@$(SNAKEMAKE) --quiet all --config studies='$(STUDIES)' || { $(STOPPED); }
 	@echo; echo 'Done. Open results/index.html'
 
-paper: $(MADE)-workflow
+paper: writable $(MADE)-workflow
 	@$(SNAKEMAKE) --quiet all -- paper || { $(STOPPED); }
 	@echo; echo 'Done. Open results/paper/claims.html'
 
-all: $(MADE)-workflow
+all: writable $(MADE)-workflow
 	@$(SNAKEMAKE) --quiet all -- all paper || { $(STOPPED); }
 	@echo; echo 'Done. Open results/index.html and results/paper/claims.html'
 

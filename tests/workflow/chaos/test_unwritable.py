@@ -1,7 +1,10 @@
 """Folders that cannot be written to: one clear line, and the same bits without kept kernels."""
 
 import os
+import shutil
 import subprocess
+from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 from chaos import assert_same_bits, complaint, run, stored
@@ -9,21 +12,45 @@ from chaos import assert_same_bits, complaint, run, stored
 pytestmark = pytest.mark.chaos
 
 
+ROOT = Path(__file__).parents[3]
+
+
+@contextmanager
+def read_only(place):
+    """Let nobody write to a folder, not even root."""
+    if os.geteuid() != 0:
+        place.chmod(0o555)
+        yield
+        place.chmod(0o755)
+        return
+    mounts = ["mount", "--bind", place, place], ["mount", "-o", "remount,bind,ro", place]
+    if any(subprocess.run(mount, capture_output=True).returncode != 0 for mount in mounts):
+        pytest.skip("root can write everywhere where mounting is not allowed")
+    yield
+    subprocess.run(["umount", "--lazy", place], check=True)
+
+
 @pytest.fixture
 def results(folder):
-    """The folder of results, which nobody can write to, not even root."""
+    """The folder of results, which nobody can write to."""
     results = folder / "results"
     results.mkdir()
-    if os.geteuid() != 0:
-        results.chmod(0o555)
+    with read_only(results):
         yield results
-        results.chmod(0o755)
-        return
-    mount = ["mount", "-t", "tmpfs", "-o", "ro", "tmpfs", str(results)]
-    if subprocess.run(mount, capture_output=True).returncode != 0:
-        pytest.skip("root can write everywhere where mounting is not allowed")
-    yield results
-    subprocess.run(["umount", "--lazy", str(results)], check=True)
+
+
+def test_a_checkout_that_cannot_be_written(tmp_path):
+    """It ends before it installs anything, and names the folder and the remedy."""
+    checkout = tmp_path / "checkout"
+    checkout.mkdir()
+    shutil.copy(ROOT / "Makefile", checkout)
+    with read_only(checkout):
+        command = subprocess.run(["make", "study"], cwd=checkout, capture_output=True, text=True)
+    assert command.returncode == 2
+    problem, remedy = command.stdout.splitlines()
+    assert problem.startswith(f"You cannot write to {checkout}")
+    assert f"git clone {checkout}" in remedy
+    assert command.stderr.count("\n") == 1
 
 
 def test_results_that_cannot_be_written(folder, results):
