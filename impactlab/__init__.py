@@ -31,6 +31,7 @@ Its sampling
 What the runs say
     analyse         convergence and sensitivity, with verdicts
     answers         the same in sentences
+    explain         why responses are missing or doubtful, in sentences
     table           runs or indices as a pandas DataFrame
     plot            figures: plot.run, plot.response, plot.sobol, plot.animate, ...
     load_surrogate  predictions without solving

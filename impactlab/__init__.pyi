@@ -31,6 +31,7 @@ from .model.material import Material as Material
 from .model.plausibility import ImplausibleWarning as ImplausibleWarning
 from .model.plausibility import TooShortWarning as TooShortWarning
 from .report.answer import answers as answers
+from .report.explanation import explain as explain
 from .report.tables import table as table
 from .simulate import simulate as simulate
 from .simulate import simulate_many as simulate_many

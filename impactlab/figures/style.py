@@ -46,6 +46,7 @@ _SETTINGS: dict[str, Any] = {
     "axes.spines.right": False,
     **dict.fromkeys(("axes.linewidth", "xtick.major.width", "ytick.major.width"), 0.6),
     **dict.fromkeys(("xtick.minor.width", "ytick.minor.width"), 0.4),
+    "axes.ymargin": 0.08,
     "axes.grid": True,
     "grid.color": "0.9",
     "grid.linewidth": 0.5,

@@ -15,7 +15,8 @@ from rich.table import Column, Table
 
 from impactlab.model.parameters import PARAMETERS
 from impactlab.model.quantities import engineering, time
-from impactlab.variables import FAILED, FAILURES, FLAGS, MARKS, RESPONSES, WARNINGS, reasons
+from impactlab.report.explanation import sentences
+from impactlab.variables import FAILED, FLAGS, RESPONSES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,14 +41,8 @@ def print_responses(run: Any) -> None:
             text = f"{float(f'{100 * value:.4g}'):,g} %"
         rows.append((name, text, entry.long_name))
     _print_table(("response", Column("value", justify="right"), "meaning"), rows)
-    console, status = Console(), run["status"].item()
-    for flag, (bit, reason) in FAILURES.items():
-        if status & bit:
-            without = [name for name, entry in RESPONSES.items() if entry.missing == flag]
-            missing = f"Missing because {reason}: {', '.join(without)}."
-            console.print(missing if without else f"Missing: {reason}.", markup=False)
-    for note in (*reasons(status, MARKS), *reasons(run["remarks"].item(), WARNINGS)):
-        console.print(f"note: {note}", markup=False)
+    for sentence in sentences(run):
+        Console().print(sentence, markup=False)
 
 
 def print_predictions(predicted: Any) -> None:

@@ -82,5 +82,5 @@ def test_it_is_no_failure(runs):
 def test_the_terminal_says_so(capsys):
     print_responses(at(5.0))
     said = " ".join(capsys.readouterr().out.split())
-    assert f"note: {WORDS}" in said
+    assert f"{WORDS[0].upper()}{WORDS[1:]}" in said
     assert "missing because" not in said
