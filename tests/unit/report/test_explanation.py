@@ -10,7 +10,10 @@ from impactlab.solver import outputs
 
 def runs(status, remarks):
     """Runs with these bits, of two responses."""
-    values = {"peak_force": np.ones(np.shape(status)), "rebound_velocity": np.ones(np.shape(status))}
+    values = {
+        "peak_force": np.ones(np.shape(status)),
+        "rebound_velocity": np.ones(np.shape(status)),
+    }
     values |= {"status": np.array(status), "remarks": np.array(remarks)}
     return xr.Dataset({name: (("run",)[: value.ndim], value) for name, value in values.items()})
 
