@@ -20,6 +20,7 @@ from impactlab.solver import (
     BEAM_MODELS,
     BENDING_MODELS,
     COMPLIANCES,
+    HINGES,
     LOADS,
     PRESTRESSES,
     WAVE_MODELS,
@@ -62,7 +63,8 @@ class Impact:
         Acceleration of the sphere alone, in m/s2.
     beam_model : str, default "euler_bernoulli"
         "euler_bernoulli" (the paper's, of yielding fibres), "elastic" (the same, no fibre yields),
-        "timoshenko" (with transverse shear and rotary inertia), "spring_mass" (Wang et al.: one
+        "timoshenko" (with transverse shear and rotary inertia), "von_karman" (with the axial force
+        of large deflections), "spring_mass" (Wang et al.: one
         degree of freedom), "rigid" (the beam does not move), or "solid" (3-D finite elements of
         both bodies, in which `contact` and `load` play no part).
     load : {"point", "contact_patch"}, default "point"
@@ -227,9 +229,9 @@ def corrected_impact(velocity: Quantity = 0.99) -> Impact:
 
 
 def is_plain(impact: Impact) -> Any:
-    """Return whether the beam is pinned at both ends and struck in its middle, of each run."""
-    pinned = np.equal(impact.beam.support_left, "pinned")
-    pinned &= np.equal(impact.beam.support_right, "pinned")
+    """Return whether the beam is pinned (or on rollers) at both ends and struck in its middle, of each run."""
+    pinned = np.isin(impact.beam.support_left, HINGES)
+    pinned &= np.isin(impact.beam.support_right, HINGES)
     return pinned & np.equal(impact.strike_position, MID_SPAN)
 
 

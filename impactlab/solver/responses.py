@@ -156,14 +156,12 @@ def read_beam(
         answer.status |= DEFLECTION_STILL_GROWING
     else:
         answer.maximum_deflection = events.w_max
-    answer.peak_plastic_strain = 0.0
+    answer.peak_plastic_strain = max(_largest(peeq, 1), _largest(peeq, grid.last + 1))
     answer.remote_plastic_strain = 0.0
     answer.plastic_zone_length = 0.0
-    strain_before = 0.0
+    strain_before = _largest(peeq, 1)
     for i in range(2, grid.last + 1):
-        strain = 0.0
-        for j in range(peeq.shape[1]):
-            strain = max(strain, peeq[i, j])
+        strain = _largest(peeq, i)
         answer.peak_plastic_strain = max(answer.peak_plastic_strain, strain)
         if abs(grid.mid - i) * grid.dx > case.beam_depth:
             answer.remote_plastic_strain = max(answer.remote_plastic_strain, strain)
@@ -172,9 +170,18 @@ def read_beam(
             answer.plastic_zone_length += grid.copies * grid.dx * share
         strain_before = strain
     if grid.stop > grid.last:  # pinned
-        share = share_above(strain_before, 0.0, PLASTIC_ZONE_STRAIN)
+        share = share_above(strain_before, _largest(peeq, grid.last + 1), PLASTIC_ZONE_STRAIN)
         answer.plastic_zone_length += grid.dx * share
     answer.plastic_dissipation = dissipated
+
+
+@compiled
+def _largest(peeq: Array, i: int) -> float:
+    """Return the largest strain of the fibres of section i."""
+    strain = 0.0
+    for j in range(peeq.shape[1]):
+        strain = max(strain, peeq[i, j])
+    return strain
 
 
 @compiled

@@ -20,7 +20,7 @@ from impactlab.model.impact import MID_SPAN, OTHER_BEAM, SPRUNG_BEAM
 from impactlab.model.parameters import PARAMETERS, SECTION, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.model.quantities import shown
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS, WAVE_MODELS
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, HINGES, LUMPED_MODELS, WAVE_MODELS
 from impactlab.study.schema.declarations import FunctionStudy, ImpactStudy, StudyFile
 from impactlab.validation.errors import unknown
 from impactlab.validation.refusals import Base, refused_corner
@@ -207,7 +207,7 @@ def _other_beams(file: StudyFile, models: set[Value]) -> Reasons:
         for side in ("left", "right")
         for support in values_of(sampling, f"support_{side}", getattr(beam, f"support_{side}"))
     }
-    if supports == {"pinned"} and set(places) == {MID_SPAN}:
+    if supports <= set(HINGES) and set(places) == {MID_SPAN}:
         return
     if models - set(WAVE_MODELS):
         reason = f"must be {' or '.join(WAVE_MODELS)} {OTHER_BEAM}"
