@@ -59,8 +59,9 @@ def node_steps(cases: Any) -> Any:
     """Return the estimated cost per run: the nodes that are solved times the time steps.
 
     cases: a record of solver.types.CASE, or an array of them. Their largest step is that of bending
-    for the paper's beam by leapfrog (beside a bar wave's for von Karman's), a bar wave's over a
-    spacing for the modal scheme, and half of it, roughly, for the other models of the beam. Any section counts as the rectangle around it.
+    for the paper's beam by leapfrog, with a bar wave's for von Karman's, a bar wave's over a
+    spacing for the modal scheme, and half of it, roughly, for the other models of the beam. Any
+    section counts as the rectangle around it.
     """
     dx = cases["beam_span"] / (cases["nodes"] - 1)
     section = Rectangle(cases["beam_width"], cases["beam_depth"])

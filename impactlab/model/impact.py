@@ -20,7 +20,6 @@ from impactlab.solver import (
     BEAM_MODELS,
     BENDING_MODELS,
     COMPLIANCES,
-    HINGES,
     LOADS,
     PRESTRESSES,
     WAVE_MODELS,
@@ -31,6 +30,8 @@ MODELS = (*BEAM_MODELS, *wings.models())
 """Names of all models of the beam."""
 MID_SPAN = 0.5
 """Usual place of the strike over the span."""
+HINGES = ("pinned", "roller")
+"""Supports against deflection alone; a roller does not hold the axis (solver/von_karman.py)."""
 MOVING_SUPPORTS = ("free", "elastic")
 """Supports whose end can be struck."""
 SPRUNG_BEAM = f"{' or '.join(BENDING_MODELS)} with elastic ends: change it, or set other supports"
@@ -229,7 +230,7 @@ def corrected_impact(velocity: Quantity = 0.99) -> Impact:
 
 
 def is_plain(impact: Impact) -> Any:
-    """Return whether the beam is pinned (or on rollers) at both ends and struck in its middle, of each run."""
+    """Return whether both ends are hinges and mid-span is struck, of each run."""
     pinned = np.isin(impact.beam.support_left, HINGES)
     pinned &= np.isin(impact.beam.support_right, HINGES)
     return pinned & np.equal(impact.strike_position, MID_SPAN)

@@ -21,9 +21,7 @@ LUMPED_MODELS = BEAM_MODELS[4:]
 SHAPES = ("rectangle", "box", "tube", "circle", "i", "profile")
 """Names of the shapes of the section (model/section.py); the index is the kernels' switch."""
 SUPPORTS = ("pinned", "clamped", "free", "elastic", "roller")
-"""What holds an end of the beam; the index is the kernels' switch, a roller's that of a pinned end."""
-HINGES = ("pinned", "roller")
-"""Supports against deflection alone; a roller does not hold the axis, which von_karman alone moves."""
+"""What holds an end of the beam; the index is the kernels' switch, in which a roller is pinned."""
 AXIAL_SUPPORTS = ("pinned", "clamped")
 """Supports that hold the axis."""
 LOADS = ("point", "contact_patch")

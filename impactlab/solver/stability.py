@@ -10,9 +10,9 @@ Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
                       with any ends, too
     von Karman's      4 (1 + s^2) E/(rho dx^2) beside the first term, of stretching under the slope
     beam              s; 0.3 is taken for s, up to which rotations count as moderate
-    strip             beside Timoshenko's (D_s + 4 T/dx^2)/m + 4 nu^2 D_s/(rho I dx^2), and the force's lever
-                      on m in the contact's (strip.py): a sum of potentials has at most the sum of
-                      their largest omega^2
+    strip             beside Timoshenko's (D_s + 4 T/dx^2)/m + 4 nu^2 D_s/(rho I dx^2), and the
+                      force's lever on m in the contact's (strip.py): a sum of potentials has at
+                      most the sum of their largest omega^2
     lumped            k_c/m_s, and (k_c + k)/m_b of the spring-mass model; a thousandth of it is
                       taken, for accuracy: no wave asks for small steps here
 The modal scheme takes the time in which a bar wave crosses a spacing, for accuracy. For stability

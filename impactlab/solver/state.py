@@ -55,7 +55,7 @@ class BeamModel(NamedTuple):
     all. beneath(state, now, F): how far the axis lies below that, m; lift(state, contact, F): how
     far the contact lifts it, m. moments(state, now): at mid-span, along the beam and across its
     width, both times the width, N m. bend_back(state, now, contact, growth): let the
-    kink of kink.py grow by so much, rad. section: functions that make the room for a section, and cut
+    kink of kink.py grow by so much, rad. section: functions that make room for a section and cut
     it; None: those of section.py for half of the fibres.
     """
 

@@ -67,7 +67,7 @@ The fields are the parameters of model/parameters.py, in SI, with contact law, b
 supports, shape, rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS,
 SUPPORTS, SHAPES, RULES and SCHEMES), the sphere's mass and the shear coefficient resolved,
 thicknesses that the shape does not have as 0, and the points of a profile, (PROFILE, 2), 0 after
-the last; the duration in s; whether supports hold the axis; and what follows from them: of the section (model/section.py) rho A,
-rho I, k G A, the stress in the outermost fibre over the bending moment and the plastic modulus, and
-of contact and strip those of model/contact_compliance.py.
+the last; the duration in s; whether supports hold the axis; and what follows from them: of the
+section (model/section.py) rho A, rho I, k G A, the stress in the outermost fibre over the bending
+moment and the plastic modulus, and of contact and strip those of model/contact_compliance.py.
 """

@@ -28,11 +28,11 @@ Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35 (both recalled).
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver.beam import FREE, SYMMETRIC, BeamGrid, copies, is_end, mirror
+from impactlab.solver.beam import FREE, SYMMETRIC, BeamGrid, BeamState, copies, is_end, mirror
 from impactlab.solver.contact_patch import spread_over_nodes
 from impactlab.solver.euler_bernoulli import deflected
 from impactlab.solver.fibre_plasticity import PlasticState, curvature, plastic_energy
@@ -58,9 +58,9 @@ class Stretch(NamedTuple):
     stiffness: EA (N). start, stop: the sections with an axial force, from start to before stop.
     held: whether the axis is held at the left end and at the right one. u: axial displacement, v =
     dt u_t its increment, dv the last change of that (m), P = N w_x (N): half-way from node i to
-    i + 1 at index i. e, kappa (1/m), N (N), M (N m) at nodes, where the step began; N_0 (N). memory:
-    e and kappa (1/m) when the fibres of a node were looked at last, and the strain that no fibre
-    yields by from there, (last + 3, 3).
+    i + 1 at index i. e, kappa (1/m), N (N), M (N m): at nodes, where the step began; N_0 (N).
+    memory: e and kappa (1/m) when the fibres of a node were looked at last, and the strain that no
+    fibre yields by from there, (last + 3, 3).
     """
 
     stiffness: float
@@ -145,7 +145,10 @@ def _strain(
     N, M, N_0, EA = stretch.N, stretch.M, stretch.N_0, stretch.stiffness
     outside = 0.0
     for i in range(np.uint64(stretch.start), np.uint64(stretch.stop)):
-        before, after = (w[now, i] - w[now, i - ONE]) * per_dx, (w[now, i + ONE] - w[now, i]) * per_dx
+        before, after = (
+            (w[now, i] - w[now, i - ONE]) * per_dx,
+            (w[now, i + ONE] - w[now, i]) * per_dx,
+        )
         e[i] = (u[i] - u[i - ONE]) * per_dx + 0.25 * (before * before + after * after)
         kappa[i] = (after - before) * per_dx
         strained = abs(e[i] - memory[i, 0]) + edge * abs(kappa[i] - memory[i, 1])
@@ -157,7 +160,7 @@ def _strain(
 
 @compiled
 def _look_at_fibres(
-    stretch: Stretch, plastic: PlasticState, section: FibreSection, rate: RateLaw, dt: float
+    stretch: Stretch, plastic: PlasticState, section: FibreSection, rate: RateLaw | None, dt: float
 ) -> None:
     """Take the fibres of the sections where one may yield to the strains of these."""
     e, kappa, memory, edge = stretch.e, stretch.kappa, stretch.memory, section.z[0]
@@ -178,7 +181,7 @@ def _look_at_fibres(
 @compiled
 def strain_fibres(
     section: FibreSection,
-    rate: RateLaw,
+    rate: RateLaw | None,
     e: float,
     kappa: float,
     before: tuple[float, float],
@@ -189,15 +192,15 @@ def strain_fibres(
 ) -> tuple[float, float, float, float]:
     """Take the fibres of section i to the strain e of the axis and the curvature kappa (1/m).
 
-    Updates row i of plastic_strain and peeq, shape (sections, P). before: e and kappa a time dt (s)
-    ago; of yielding by the rate alone. Returns (N_0 in N, M_0 in N m, the strain that no fibre
-    yields by, work of the overstress in J/m).
+    Updates row i of plastic_strain and peeq, shape (sections, P). before: e and kappa at the
+    last look, where fibres flow by the rate a time dt (s) ago. Returns (N_0 in N, M_0 in N m, the
+    strain that no fibre yields by, work of the overstress in J/m).
     """
     z, (E, S_y, H_i, H_k) = section.z, section.moduli
     N_0, M_0, room, work = 0.0, 0.0, FAR, 0.0
     for j in range(z.size):
         strain, slipped, now = plastic_strain[i, j], peeq[i, j], e - z[j] * kappa
-        if rate.D > 0.0:
+        if rate is not None and rate.D > 0.0:
             Y, trial = S_y + H_i * slipped, E * now - (E + H_k) * strain
             if abs(trial) > Y * (1.0 + _ROUND_OFF):
                 s, slip = overstress(abs(trial), Y, H_i, E + H_k, dt, rate)

@@ -20,8 +20,7 @@ from scipy.optimize import brentq
 from impactlab.fem3d.solver.estimates import checked_patch, checked_size, uniform
 from impactlab.fem3d.solver.impulses import bulges
 from impactlab.model.checks import positive
-from impactlab.model.impact import MID_SPAN, Impact
-from impactlab.solver import HINGES
+from impactlab.model.impact import HINGES, MID_SPAN, Impact
 from impactlab.types import Floats
 
 Integers = NDArray[np.int32]

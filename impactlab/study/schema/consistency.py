@@ -16,11 +16,11 @@ from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
 from impactlab.model.case_table import between_nodes
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
-from impactlab.model.impact import MID_SPAN, OTHER_BEAM, SPRUNG_BEAM
+from impactlab.model.impact import HINGES, MID_SPAN, OTHER_BEAM, SPRUNG_BEAM
 from impactlab.model.parameters import PARAMETERS, SECTION, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.model.quantities import shown
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, HINGES, LUMPED_MODELS, WAVE_MODELS
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS, WAVE_MODELS
 from impactlab.study.schema.declarations import FunctionStudy, ImpactStudy, StudyFile
 from impactlab.validation.errors import unknown
 from impactlab.validation.refusals import Base, refused_corner
