@@ -110,8 +110,8 @@ def make_grid(
     """Return the grid of a beam with so many nodes, and what follows from it.
 
     struck: the node that is, counted from 0 at the left end; -1: the middle one. k_left, k_right
-    (N/m), turn_left, turn_right (N m): springs of elastic ends against deflection and rotation. alike:
-    whether equal ends make a symmetric beam.
+    (N/m), turn_left, turn_right (N m): springs of elastic ends against deflection and rotation.
+    alike: whether equal ends make a symmetric beam.
     """
     middle = half_spacings(nodes)
     struck = middle if struck < 0 else struck
