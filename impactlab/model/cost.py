@@ -185,4 +185,5 @@ def _hertz(cases: Any) -> tuple[Any, Any]:
 def memory(cases: Any) -> Any:
     """Return the estimated memory of the march per run, in bytes."""
     modes = np.where(cases["scheme"] == SCHEMES.index("modal"), 2.0 * cases["nodes"], 0.0)
-    return cases["nodes"] * (80.0 + 4.0 * cases["points"] + modes)
+    whole = 1.0 + (cases["beam_model"] == BEAM_MODELS.index("von_karman"))  # of the depth
+    return cases["nodes"] * (80.0 * whole + 4.0 * whole * cases["points"] + modes)

@@ -127,11 +127,11 @@ def cut_whole_section(case: Record, fibres: Array, room: Room) -> FibreSection:
         z[j], area[j] = fibres[0, j], 0.5 * fibres[1, j]
         z[mirrored], area[mirrored] = -z[j], area[j]
         rest -= fibres[1, j]
+        stiffness += E * fibres[1, j] * z[j] * z[j]
     if points > 2 * half:
         z[half], area[half] = 0.0, max(rest, 0.0)
     for j in range(points):
         lever[j] = E * area[j] * z[j]
-        stiffness += lever[j] * z[j]
     yields = case.beam_yield_stress / (E * z[0])
     return FibreSection(z, area, lever, stiffness, yields, _moduli(case), rate_law(case))
 
