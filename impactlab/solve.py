@@ -21,6 +21,7 @@ from impactlab.solver.jit import FOLDER
 from impactlab.solver.kernels import is_extended, kernel_of
 from impactlab.solver.outputs import blank
 from impactlab.solver.section import FibreSection, make_section
+from impactlab.solver.types import VON_KARMAN
 from impactlab.variables import HISTORIES
 
 _COMPILE = """
@@ -46,32 +47,35 @@ def solve(
     if profiles and any(np.unique(cases[name]).size > 1 for name in ("nodes", "points", "rule")):
         raise ValueError("profiles need the same nodes, points and rule in every run")
     nodes, points = (int(cases[0].nodes), int(cases[0].points)) if profiles else (0, 0)
-    fibres, runs = points // 2, cases.size
+    runs = cases.size
     table = fibre_table(cases)
     responses = blank(runs)
     histories = np.full((runs, len(HISTORIES), samples), np.nan)
     deflection = np.full((runs, nodes), np.nan)
-    strains = np.full((2, runs, nodes, fibres), np.nan)
+    strains = np.full((2, runs, nodes, points), np.nan)
     contacts, events = np.zeros(runs, CONTACT), np.zeros(runs, EVENTS)
-    arrays = (responses, contacts, events, histories, deflection, *strains)
+    arrays = (responses, contacts, events, histories, deflection)
     models, schemes = cases["beam_model"], cases["scheme"]
     kinds = np.stack([models, schemes, is_extended(cases), mode_keys(cases)])
     starts = np.flatnonzero(np.diff(kinds, prepend=-1).any(axis=0))
     for start, end in itertools.pairwise((*starts, runs)):
         model, scheme, extended, _ = kinds[:, start]
+        stretches = model == VON_KARMAN
+        fibres = np.full((2, end - start, nodes, points if stretches else points // 2), np.nan)
         compile_kernels([BEAM_MODELS[model]], [SCHEMES[scheme]], [bool(extended)])
         kernel_of(model, scheme, bool(extended))(
             cases[start:end],
             table[start:end],
             mode_table(cases[start]),
             *(array[start:end] for array in arrays),
+            *fibres,
         )
+        strains[:, start:end] = fibres[..., ::-1] if stretches else _depth(fibres, points)
     columns = {name: responses[name].copy() for name in responses.dtype.names or ()}
     if samples:
         columns |= zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)
     if profiles:
-        columns["equivalent_plastic_strain"] = _depth(strains[1], 1.0, points)
-        columns["plastic_strain"] = _depth(strains[0], -1.0, points)
+        columns["plastic_strain"], columns["equivalent_plastic_strain"] = strains
         columns["deflection"] = deflection
     return columns
 
@@ -110,8 +114,8 @@ def fibre_section(case: Any) -> FibreSection:
     return section
 
 
-def _depth(lower: np.ndarray[Any, Any], sign: float, points: int) -> np.ndarray[Any, Any]:
-    """Return all fibres in ascending z, from those of z > 0, outermost first."""
-    axis = np.abs(0.0 * lower[:, :, : points % 2])  # NaN where a run diverged, as all else
-    upper = sign * lower + 0.0  # no -0.0
-    return np.concatenate([upper, axis, lower[:, :, ::-1]], axis=2)
+def _depth(lower: np.ndarray[Any, Any], points: int) -> np.ndarray[Any, Any]:
+    """Return plastic strain and PEEQ of all fibres in ascending z, from z > 0, outermost first."""
+    axis = np.abs(0.0 * lower[..., : points % 2])  # NaN where a run diverged, as all else
+    upper = np.stack([-lower[0], lower[1]]) + 0.0  # no -0.0
+    return np.concatenate([upper, axis, lower[..., ::-1]], axis=-1)

@@ -31,7 +31,8 @@ def simulate(
     beam_model: Annotated[
         str | None,
         typer.Option(
-            help="euler_bernoulli, elastic, timoshenko, spring_mass or rigid, if not the base's."
+            help="euler_bernoulli, elastic, timoshenko, von_karman, spring_mass or rigid, "
+            "if not the base's."
         ),
     ] = None,
     nodes: Annotated[int, typer.Option(help="Nodes along the span, odd.")] = 601,

@@ -291,6 +291,7 @@ def _beam(ax: Axes, run: xr.Dataset) -> Part:
     ends = [np.asarray(run.get(f"support_{end}", "pinned")).item() for end in ("left", "right")]
     _supports(ax, x, ends, "pinned", "^")
     _supports(ax, x, ends, "elastic", "d")
+    _supports(ax, x, ends, "roller", "o")
     above = ScaledTranslation(0.0, (_BALL + 1.5) / 72, ax.figure.dpi_scale_trans)
     (ball,) = ax.plot(
         [x[0] + share * (x[-1] - x[0])],

@@ -20,7 +20,7 @@ from impactlab.figures.measures import analysed
 from impactlab.figures.needs import needed
 from impactlab.model.cost import node_steps
 from impactlab.model.parameters import REFINEMENTS
-from impactlab.solver import BEAM_MODELS, SCHEMES, SUPPORTS
+from impactlab.solver import AXIAL_SUPPORTS, BEAM_MODELS, SCHEMES, SUPPORTS
 from impactlab.types import Floats
 from impactlab.verdicts import ROUND_OFF, TOLERANCE
 
@@ -340,6 +340,9 @@ def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     selected = _COST.plan(runs)
     given = {name: runs[name].reset_coords(drop=True) for name in _INPUTS}
     others = {"support_left": "pinned", "support_right": "pinned", "strike_position": 0.5}
+    ends = (runs.get(f"support_{side}", xr.DataArray("pinned")) for side in ("left", "right"))
+    held = (end.isin(AXIAL_SUPPORTS) for end in ends)
+    given |= dict(zip(("axis_held_left", "axis_held_right"), held, strict=True))
     others |= {
         f"{kind}stiffness_{side}": 0.0 for kind in ("", "rotational_") for side in ("left", "right")
     }

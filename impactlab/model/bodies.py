@@ -93,11 +93,13 @@ class Beam:
         Width over the depth, with shape "profile" alone: distances from the axis over half the
         depth, from 0 to 1, and widths over the largest one, which is `width`; straight in between,
         two of one distance are a step. Kept as text, "0 0.2, 0.8 0.2, 0.8 1, 1 1".
-    support_left, support_right : {"pinned", "clamped", "free", "elastic"}, default "pinned"
-        What holds each end: "pinned" (deflection and moment are zero; a roller is the same, without
-        an axial force), "clamped" (deflection and slope are zero), "free" (moment and shear force
-        are zero) or "elastic" (springs). Others than pinned need the beam models "euler_bernoulli",
-        "elastic" or "timoshenko", elastic ones one of the first two.
+    support_left, support_right : str, default "pinned"
+        What holds each end: "pinned" (deflection and moment are zero), "clamped" (deflection
+        and slope are zero), "free" (moment and shear force are zero), "elastic" (springs) or
+        "roller" (pinned, but free along the axis, which the beam model "von_karman" alone moves:
+        the others take it as "pinned"). Clamped and free ends need the beam models
+        "euler_bernoulli", "elastic", "timoshenko" or "von_karman", elastic ones one of the first
+        two.
     stiffness_left, stiffness_right : Quantity, default 0
         Shear force over the deflection at an elastic end, in N/m.
     rotational_stiffness_left, rotational_stiffness_right : Quantity, default 0

@@ -24,11 +24,13 @@ from impactlab.model.parameters import (
 )
 from impactlab.model.shapes import profile_points
 from impactlab.solver import (
+    AXIAL_SUPPORTS,
     BEAM_MODELS,
     BENDING_MODELS,
     LOADS,
     LUMPED_MODELS,
     SCHEMES,
+    SUPPORTS,
 )
 from impactlab.solver.types import CASE, PROFILE
 
@@ -149,6 +151,10 @@ def _table(
         if entry.choices:
             numbered = enumerate(entry.choices)
             values[name] = sum(number * (values[name] == word) for number, word in numbered)
+    for side in ("left", "right"):  # a roller is a pinned end whose axis is not held
+        support, axial = values[f"support_{side}"], map(SUPPORTS.index, AXIAL_SUPPORTS)
+        values[f"axis_held_{side}"] = np.isin(support, [*axial])
+        values[f"support_{side}"] = np.where(support == SUPPORTS.index("roller"), 0, support)
     points = profile_points(impact.beam.profile or ())
     values["beam_profile"] = np.zeros((PROFILE, 2))
     values["beam_profile"][: len(points)] = np.reshape(points, (-1, 2))

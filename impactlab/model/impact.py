@@ -30,6 +30,8 @@ MODELS = (*BEAM_MODELS, *wings.models())
 """Names of all models of the beam."""
 MID_SPAN = 0.5
 """Usual place of the strike over the span."""
+HINGES = ("pinned", "roller")
+"""Supports against deflection alone; a roller does not hold the axis (solver/von_karman.py)."""
 MOVING_SUPPORTS = ("free", "elastic")
 """Supports whose end can be struck."""
 SPRUNG_BEAM = f"{' or '.join(BENDING_MODELS)} with elastic ends: change it, or set other supports"
@@ -62,7 +64,8 @@ class Impact:
         Acceleration of the sphere alone, in m/s2.
     beam_model : str, default "euler_bernoulli"
         "euler_bernoulli" (the paper's, of yielding fibres), "elastic" (the same, no fibre yields),
-        "timoshenko" (with transverse shear and rotary inertia), "spring_mass" (Wang et al.: one
+        "timoshenko" (with transverse shear and rotary inertia), "von_karman" (with the axial force
+        of large deflections), "spring_mass" (Wang et al.: one
         degree of freedom), "rigid" (the beam does not move), or "solid" (3-D finite elements of
         both bodies, in which `contact` and `load` play no part).
     load : {"point", "contact_patch"}, default "point"
@@ -227,9 +230,9 @@ def corrected_impact(velocity: Quantity = 0.99) -> Impact:
 
 
 def is_plain(impact: Impact) -> Any:
-    """Return whether the beam is pinned at both ends and struck in its middle, of each run."""
-    pinned = np.equal(impact.beam.support_left, "pinned")
-    pinned &= np.equal(impact.beam.support_right, "pinned")
+    """Return whether both ends are hinges and mid-span is struck, of each run."""
+    pinned = np.isin(impact.beam.support_left, HINGES)
+    pinned &= np.isin(impact.beam.support_right, HINGES)
     return pinned & np.equal(impact.strike_position, MID_SPAN)
 
 

@@ -7,14 +7,23 @@ RULES = ("lobatto", "legendre", "layers")
 """Names of the integration rules over the depth; the index is the kernels' switch."""
 SCHEMES = ("leapfrog", "modal")
 """Names of the schemes in time; the index is the kernels' switch."""
-BEAM_MODELS = ("euler_bernoulli", "elastic", "timoshenko", "spring_mass", "rigid")
+BEAM_MODELS = (
+    "euler_bernoulli",
+    "elastic",
+    "timoshenko",
+    "von_karman",
+    "spring_mass",
+    "rigid",
+)
 """Names of the models of the beam; the index is the kernels' switch."""
-LUMPED_MODELS = BEAM_MODELS[3:]
+LUMPED_MODELS = BEAM_MODELS[4:]
 """Those that move as one mass."""
 SHAPES = ("rectangle", "box", "tube", "circle", "i", "profile")
 """Names of the shapes of the section (model/section.py); the index is the kernels' switch."""
-SUPPORTS = ("pinned", "clamped", "free", "elastic")
-"""What holds an end of the beam; the index is the kernels' switch."""
+SUPPORTS = ("pinned", "clamped", "free", "elastic", "roller")
+"""What holds an end of the beam; the index is the kernels' switch, in which a roller is pinned."""
+AXIAL_SUPPORTS = ("pinned", "clamped")
+"""Supports that hold the axis."""
 LOADS = ("point", "contact_patch")
 """Where the contact force acts on the beam; the index is the kernels' switch."""
 COMPLIANCES = ("half_space", "beam", "strip")
@@ -23,5 +32,5 @@ PRESTRESSES = ("ignored", "bending")
 """What stress the metal is under where the contact yields (contact/prestress.py)."""
 BENDING_MODELS = BEAM_MODELS[:2]
 """Those that have every scheme in time; the others have leapfrog alone."""
-WAVE_MODELS = BEAM_MODELS[:3]
+WAVE_MODELS = BEAM_MODELS[:4]
 """Those of which every node moves, with any ends, struck anywhere."""

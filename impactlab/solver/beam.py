@@ -76,7 +76,7 @@ class BeamGrid(NamedTuple):
     lift_right: float
 
 
-PINNED, CLAMPED, FREE, SPRUNG = (SUPPORTS.index(name) for name in SUPPORTS)
+PINNED, CLAMPED, FREE, SPRUNG = (SUPPORTS.index(name) for name in SUPPORTS[:4])
 SYMMETRIC = len(SUPPORTS)
 """Kinds of ends; symmetric is mid-span, where a half beam ends."""
 COPIES = 2.0
@@ -105,15 +105,17 @@ def make_grid(
     k_right: float = 0.0,
     turn_left: float = 0.0,
     turn_right: float = 0.0,
+    alike: bool = True,
 ) -> BeamGrid:
     """Return the grid of a beam with so many nodes, and what follows from it.
 
     struck: the node that is, counted from 0 at the left end; -1: the middle one. k_left, k_right
     (N/m), turn_left, turn_right (N m): springs of elastic ends against deflection and rotation.
+    alike: whether equal ends make a symmetric beam.
     """
     middle = half_spacings(nodes)
     struck = middle if struck < 0 else struck
-    halved = left == right and struck == middle and 2 * middle == nodes - 1
+    halved = alike and left == right and struck == middle and 2 * middle == nodes - 1
     if left == SPRUNG:
         halved = halved and k_left == k_right and turn_left == turn_right
     start = 1 if left == PINNED else 2  # index of the left end

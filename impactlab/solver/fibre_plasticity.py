@@ -288,8 +288,9 @@ def plastic_energy(
 ) -> tuple[float, float]:
     """Return (stored at zero curvature, dissipated) energy in J, of fibres that are up to date."""
     stored, dissipated = 0.0, 0.0
-    for i in range(2, grid.last + 1):
-        if plastic_state.peeq[i, 0] > 0.0:  # the outermost fibre yields first
+    peeq = plastic_state.peeq
+    for i in range(1, grid.last + 2):  # pinned ends may stretch
+        if peeq[i, 0] > 0.0 or peeq[i, peeq.shape[1] - 1] > 0.0:  # an outermost fibre yields first
             stored_i, dissipated_i = plastic_energies(
                 section, plastic_state.plastic_strain, plastic_state.peeq, i
             )

@@ -17,6 +17,7 @@ from impactlab.solver import (
     responses,
     strip,
     timoshenko,
+    von_karman,
 )
 from impactlab.solver.beam import half_node, make_beam, rest_beam
 from impactlab.solver.contact.history import make_pair
@@ -127,7 +128,8 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     zeros, CONTACT and EVENTS records to work in. samples: shape (R, 5, S), filled with force,
     mid-span deflection, mid-span curvature, sphere displacement and indentation at S equal
     intervals from 0 to the duration; S = 0 for none. deflection (R, nodes), plastic_strain and peeq
-    (R, nodes, P // 2): filled with the beam's final state; length 0 for none. A run that diverges
+    (R, nodes, P // 2): filled with the beam's final state; length 0 for none. A model whose
+    sections have P fibres, outermost below first, fills (R, nodes, P). A run that diverges
     leaves NaN and its status.
 
     A record does not keep its array alive in compiled code, so kernels make no arrays of records:
@@ -135,7 +137,10 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     """
     make, renew, take, deflect = model.make, model.renew, model.take, model.deflect
     run = _run(model, extended)
-    cut = _section_at_rate if extended else cut_section
+    make_section_room, cut = model.section or (
+        make_room,
+        _section_at_rate if extended else cut_section,
+    )
 
     def kernel(
         cases: Array,
@@ -153,7 +158,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
         while stop < cases.size:
             start, first = stop, cases[stop]
             stop = _end_of_alike(cases, start)
-            room, size = make_room(first), grid_of(first, 1.0, 1.0, 1.0)
+            room, size = make_section_room(first), grid_of(first, 1.0, 1.0, 1.0)
             section = cut(first, fibres[start], room)
             beam, plastic = make_beam(size), make_plastic_state(size, section)
             extra = make(first, section, size)
@@ -186,10 +191,12 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
 _EULER_BERNOULLI = _kernel("euler_bernoulli", euler_bernoulli.MODEL)
 _LUMPED = _kernel("lumped", lumped.MODEL)
 _EXTENDED_LUMPED = _kernel("extended_lumped", lumped.MODEL, True)
+_VON_KARMAN = _kernel("von_karman", von_karman.MODEL, True)
 _LEAPFROG = {
     "euler_bernoulli": _EULER_BERNOULLI,
     "elastic": _EULER_BERNOULLI,
     "timoshenko": _kernel("timoshenko", timoshenko.MODEL),
+    "von_karman": _VON_KARMAN,
     "spring_mass": _LUMPED,
     "rigid": _LUMPED,
 }
@@ -198,6 +205,7 @@ _EXTENDED = {
     "euler_bernoulli": _EXTENDED_EULER_BERNOULLI,
     "elastic": _EXTENDED_EULER_BERNOULLI,
     "timoshenko": _kernel("extended_timoshenko", strip.MODEL, True),
+    "von_karman": _VON_KARMAN,
     "spring_mass": _EXTENDED_LUMPED,
     "rigid": _EXTENDED_LUMPED,
 }

@@ -6,9 +6,11 @@ a blank record, and says in its bits why others are missing.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from impactlab.solver.beam import BeamGrid
+from impactlab.solver.beam import CLAMPED, BeamGrid
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.finite_element import (
     LARGEST_CIRCLE,
@@ -40,11 +42,12 @@ from impactlab.solver.outputs import (
     SPHERE_NOT_LEAVING,
     SPHERE_YIELD_OUTSIDE_DATA,
     STIFFNESS_RATIO_OUTSIDE_DATA,
+    STRETCHING_LEFT_OUT,
     STRUCK_NEAR_END,
     WALL_MAY_DENT,
     YIELD_RATIO_OUTSIDE_DATA,
 )
-from impactlab.solver.types import CIRCLE, RECTANGLE, TUBE, Array, Record
+from impactlab.solver.types import CIRCLE, RECTANGLE, TUBE, VON_KARMAN, Array, Record
 
 PLASTIC_ZONE_STRAIN = 1e-5
 """PEEQ from which on a section counts as plastic."""
@@ -52,6 +55,8 @@ LARGEST_COMPLIANCE = 0.5
 """Of the contact, over that of its law, taken back by the bodies' ends: beyond it the circle is not
 small beside them."""
 _FINITE_ELEMENT = LAWS.index("finite_element")
+LARGEST_STRETCHING = 0.02
+"""Share of the largest deflection from which on a beam's stretching is not left out tacitly."""
 _ROUNDING = 1e-9
 """Share of the loading work below which the contact has created no energy."""
 
@@ -138,6 +143,26 @@ def read_shape(answer: Record, shape: int) -> None:
 
 
 @compiled
+def stretching(case: Record, w: float) -> float:
+    """Estimate what stretching takes off a largest deflection w (m) under the sphere, in shares.
+
+    Of a beam that swings in one shape, half a sine wave to the power n, all of whose energy is
+    elastic at its largest deflection: half the ratio of its energies of stretching and of bending,
+    1/16 (pinned, n = 1) or 1/64 (clamped, n = 2) of (w/r)^2 with the radius of gyration r, and the
+    geometric mean for one of both. On 30 impacts of the model von_karman it is 0.4 to 3.3
+    times what that gives, where that is below 15 %.
+    """
+    if case.axis_held_left == 0 or case.axis_held_right == 0:
+        return 0.0
+    n = 1.0
+    for support in (case.support_left, case.support_right):
+        n += 0.5 if support == CLAMPED else 0.0
+    shape = max(math.sin(math.pi * case.strike_position), 0.0) ** n
+    square = w * w * case.mass_per_length / case.rotary_inertia
+    return float(square / (shape * shape * 4.0 ** (n + 1.0)))
+
+
+@compiled
 def read_rebound(answer: Record, case: Record, events: Record) -> None:
     """Fill in the rebound, once the sphere moves upwards and away from the beam."""
     if events.touching == 1.0 or events.v_s >= 0.0 or events.v_s >= events.v_mid:
@@ -156,14 +181,15 @@ def read_beam(
         answer.status |= DEFLECTION_STILL_GROWING
     else:
         answer.maximum_deflection = events.w_max
-    answer.peak_plastic_strain = 0.0
+        stretches = case.beam_model == VON_KARMAN
+        if not stretches and stretching(case, events.w_max) > LARGEST_STRETCHING:
+            answer.remarks |= STRETCHING_LEFT_OUT
+    answer.peak_plastic_strain = max(_largest(peeq, 1), _largest(peeq, grid.last + 1))
     answer.remote_plastic_strain = 0.0
     answer.plastic_zone_length = 0.0
-    strain_before = 0.0
+    strain_before = _largest(peeq, 1)
     for i in range(2, grid.last + 1):
-        strain = 0.0
-        for j in range(peeq.shape[1]):
-            strain = max(strain, peeq[i, j])
+        strain = _largest(peeq, i)
         answer.peak_plastic_strain = max(answer.peak_plastic_strain, strain)
         if abs(grid.mid - i) * grid.dx > case.beam_depth:
             answer.remote_plastic_strain = max(answer.remote_plastic_strain, strain)
@@ -172,9 +198,18 @@ def read_beam(
             answer.plastic_zone_length += grid.copies * grid.dx * share
         strain_before = strain
     if grid.stop > grid.last:  # pinned
-        share = share_above(strain_before, 0.0, PLASTIC_ZONE_STRAIN)
+        share = share_above(strain_before, _largest(peeq, grid.last + 1), PLASTIC_ZONE_STRAIN)
         answer.plastic_zone_length += grid.dx * share
     answer.plastic_dissipation = dissipated
+
+
+@compiled
+def _largest(peeq: Array, i: int) -> float:
+    """Return the largest strain of the fibres of section i."""
+    strain = 0.0
+    for j in range(peeq.shape[1]):
+        strain = max(strain, peeq[i, j])
+    return strain
 
 
 @compiled

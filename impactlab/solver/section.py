@@ -92,14 +92,48 @@ def cut_section(case: Record, fibres: Array, room: Room) -> FibreSection:
         lever,
         stiffness,
         FAR if case.beam_model == ELASTIC else case.beam_yield_stress / (E * z[0]),
-        Moduli(
-            E,
-            case.beam_yield_stress,
-            case.beam_isotropic_hardening_modulus,
-            case.beam_kinematic_hardening_modulus,
-        ),
+        _moduli(case),
         None,
     )
+
+
+@compiled
+def _moduli(case: Record) -> Moduli:
+    return Moduli(
+        case.beam_youngs_modulus,
+        case.beam_yield_stress,
+        case.beam_isotropic_hardening_modulus,
+        case.beam_kinematic_hardening_modulus,
+    )
+
+
+@allocating
+def make_whole_room(case: Record) -> Room:
+    """Return room for all fibres of the section of a case."""
+    return Room(np.empty(case.points), np.empty(case.points), np.empty(case.points))
+
+
+@allocating
+def cut_whole_section(case: Record, fibres: Array, room: Room) -> FibreSection:
+    """Return the section of a case with the fibres below the axis, too; see cut_section.
+
+    None counts twice. A fibre on the axis has the area that the others leave of the section.
+    """
+    E, stiffness, (z, area, lever) = case.beam_youngs_modulus, 0.0, room
+    points, half = z.size, z.size // 2
+    rest = case.mass_per_length / case.beam_density
+    for j in range(half):
+        mirrored = points - 1 - j
+        z[j], area[j] = fibres[0, j], 0.5 * fibres[1, j]
+        z[mirrored], area[mirrored] = -z[j], area[j]
+        rest -= fibres[1, j]
+        stiffness += E * fibres[1, j] * z[j] * z[j]
+    if points > 2 * half:
+        z[half], area[half] = 0.0, max(rest, 0.0)
+    for j in range(points):
+        lever[j] = E * area[j] * z[j]
+    yields = case.beam_yield_stress / (E * z[0])
+    return FibreSection(z, area, lever, stiffness, yields, _moduli(case), rate_law(case))
 
 
 @allocating

@@ -8,9 +8,11 @@ Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
                       spring of an elastic end adds 2 k_t/(rho A dx)
     Timoshenko beam   4 (EI)_q/(rho I dx^2) + k G A/(rho I) + 4 k G A/(rho A dx^2) as first term
                       with any ends, too
-    strip             beside it (D_s + 4 T/dx^2)/m + 4 nu^2 D_s/(rho I dx^2), and the force's lever
-                      on m in the contact's (strip.py): a sum of potentials has at most the sum of
-                      their largest omega^2
+    von Karman's      4 (1 + s^2) E/(rho dx^2) beside the first term, of stretching under the slope
+    beam              s; 0.3 is taken for s, up to which rotations count as moderate
+    strip             beside Timoshenko's (D_s + 4 T/dx^2)/m + 4 nu^2 D_s/(rho I dx^2), and the
+                      force's lever on m in the contact's (strip.py): a sum of potentials has at
+                      most the sum of their largest omega^2
     lumped            k_c/m_s, and (k_c + k)/m_b of the spring-mass model; a thousandth of it is
                       taken, for accuracy: no wave asks for small steps here
 The modal scheme takes the time in which a bar wave crosses a spacing, for accuracy. For stability
@@ -39,7 +41,7 @@ from impactlab.solver.lumped import mid_span
 from impactlab.solver.responses import LARGEST_COMPLIANCE
 from impactlab.solver.section import FibreSection
 from impactlab.solver.strain_rate import rate_factor
-from impactlab.solver.types import MODAL, SPRING_MASS, TIMOSHENKO, Record
+from impactlab.solver.types import MODAL, SPRING_MASS, TIMOSHENKO, VON_KARMAN, Record
 
 _GROWTH, _COARSE_GROWTH = 1.25, 2.0
 _SAFETY = 2.0
@@ -47,6 +49,8 @@ _SAFETY = 2.0
 _LARGEST_SHARE = 0.01
 """Of the loading work, in energy that a jump at the turn may bring at the critical time step."""
 _LUMPED_STEPS = 1000.0
+LARGEST_SLOPE = 0.3
+"""Of the beam that stretches, for the time step."""
 _UNEVEN = 0.07
 _SMALL = 1e-4
 """Share of an argument by which differences are taken."""
@@ -182,6 +186,9 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
         left = case.stiffness_left if case.support_left == SPRUNG else 0.0
         right = case.stiffness_right if case.support_right == SPRUNG else 0.0
         omega_squared = 16.0 * EI / (mu * dx**4) + 2.0 * max(left, right) / (mu * dx)
+        if case.beam_model == VON_KARMAN:
+            wave_squared = case.beam_youngs_modulus / case.beam_density
+            omega_squared += 4.0 * (1.0 + LARGEST_SLOPE**2) * wave_squared / dx**2
     dt = 2.0 / math.sqrt(omega_squared + contact)
     return _damped(dt, 0.5 * c * contact / k_c * dt)
 
@@ -190,6 +197,7 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
 def grid_of(case: Record, dx: float, dt: float, EI: float) -> BeamGrid:
     """Return the grid of a case's beam, of spacing dx (m) and step dt (s)."""
     ends, struck = (case.support_left, case.support_right), struck_node(case)
+    alike = case.beam_model != VON_KARMAN or case.axis_held_left == case.axis_held_right
     return make_grid(
         case.nodes,
         dx,
@@ -202,6 +210,7 @@ def grid_of(case: Record, dx: float, dt: float, EI: float) -> BeamGrid:
         case.stiffness_right,
         case.rotational_stiffness_left,
         case.rotational_stiffness_right,
+        alike,
     )
 
 

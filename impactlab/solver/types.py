@@ -24,6 +24,7 @@ Shape = tuple[float, ...]
 
 ELASTIC = BEAM_MODELS.index("elastic")
 TIMOSHENKO = BEAM_MODELS.index("timoshenko")
+VON_KARMAN = BEAM_MODELS.index("von_karman")
 SPRING_MASS = BEAM_MODELS.index("spring_mass")
 RIGID = BEAM_MODELS.index("rigid")
 MODAL = SCHEMES.index("modal")
@@ -57,7 +58,7 @@ CASE = record(
     width_stiffness width_inertia width_lever width_twist axis_compliance axis_bending
     """,
     integers="contact beam_model load contact_prestress support_left support_right"
-    " beam_shape nodes points rule scheme",
+    " axis_held_left axis_held_right beam_shape nodes points rule scheme",
 )
 CASE = np.dtype((np.record, [*CASE.descr, ("beam_profile", float, (PROFILE, 2))]))
 """Record type of the case table: one record per run, everything the kernels need to know of it.
@@ -66,7 +67,7 @@ The fields are the parameters of model/parameters.py, in SI, with contact law, b
 supports, shape, rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS,
 SUPPORTS, SHAPES, RULES and SCHEMES), the sphere's mass and the shear coefficient resolved,
 thicknesses that the shape does not have as 0, and the points of a profile, (PROFILE, 2), 0 after
-the last; the duration in s; and what follows from them: of the section (model/section.py) rho A,
-rho I, k G A, the stress in the outermost fibre over the bending moment and the plastic modulus, and
-of contact and strip those of model/contact_compliance.py.
+the last; the duration in s; whether supports hold the axis; and what follows from them: of the
+section (model/section.py) rho A, rho I, k G A, the stress in the outermost fibre over the bending
+moment and the plastic modulus, and of contact and strip those of model/contact_compliance.py.
 """

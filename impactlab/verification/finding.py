@@ -125,6 +125,7 @@ class Comparisons(list[Comparison]):
 _SPELLED = {law: record.short for law, record in CONTACT_LAWS.items()} | {
     "euler_bernoulli": "Euler-Bernoulli",
     "timoshenko": "Timoshenko",
+    "von_karman": "von Karman",
 }
 _NAME = re.compile(rf"\b(?:{'|'.join(_SPELLED)})\b|(?<=[a-z][a-z])_(?=[a-z][a-z])")
 

@@ -1,9 +1,10 @@
 """The yielding beam in OpenSees (extra `opensees`), struck by a given force history.
 
-Half the beam: displacement-based elements with cubic shape functions and lumped mass, three Lobatto
-sections each, elastic-perfectly plastic, of the same fibres as ours (a rectangle), or of layers of
-each flange and of the web (an I-section, a box); Newmark's average acceleration with Newton's
-iterations. Source: F. McKenna, Comput. Sci. Eng. 13 (2011) 58.
+Half the beam, or all of it where struck beside its middle: displacement-based elements with cubic
+shape functions and lumped mass, corotational where the axis is held, three Lobatto sections each,
+elastic-perfectly plastic, of the same fibres as ours (a rectangle), or of layers of each flange and
+of the web (an I-section, a box); Newmark's average acceleration with Newton's iterations.
+Source: F. McKenna, Comput. Sci. Eng. 13 (2011) 58.
 """
 
 from __future__ import annotations
@@ -40,34 +41,47 @@ def fibres_of(beam: il.Beam) -> list[tuple[float, float]]:
     return fibres
 
 
-def strike(
-    beam: il.Beam, force: np.ndarray, duration: float, elements: int, steps: int
+def strike(  # noqa: C901
+    beam: il.Beam,
+    force: np.ndarray,
+    duration: float,
+    elements: int,
+    steps: int,
+    *,
+    held: bool = False,
+    place: float = 0.5,
 ) -> tuple[float, float]:
-    """Return the largest deflection (m) and the plastic dissipation (J).
+    """Return the largest deflection under the force (m) and the plastic dissipation (J).
 
-    force (N): equally spaced from 0 to the duration (s). elements: over half the span.
+    force (N): equally spaced from 0 to the duration (s). elements: over half the span. held:
+    whether the supports hold the axis. place: of the force, as a share of the span.
     """
+    halved = place == 0.5
     steel, dx = beam.material, 0.5 * beam.span / elements
+    elements = elements if halved else 2 * elements
     E, fibres = steel.youngs_modulus, fibres_of(beam)
     mass = steel.density * sum(area for _, area in fibres)
-    middle, inside = elements + 1, range(1, elements + 1)
+    middle, inside = round(place * beam.span / dx) + 1, range(1, elements + 1)
+    share = 0.5 if halved else 1.0
 
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 3)
     for node in range(elements + 1):
         ops.node(node + 1, node * dx, 0.0)
-    ops.fix(1, 0, 1, 0)
-    ops.fix(middle, 1, 0, 1)
+    for end, support in ((1, beam.support_left), (elements + 1, beam.support_right))[: 2 - halved]:
+        ops.fix(end, int(held), 1, int(support == "clamped"))
+    if halved:
+        ops.fix(middle, 1, 0, 1)
     ops.uniaxialMaterial("ElasticPP", 1, E, steel.yield_stress / E)
     ops.section("Fiber", 1)
     for y, area in fibres:
         ops.fiber(y, 0.0, area, 1)
-    ops.geomTransf("Linear", 1)
+    ops.geomTransf("Corotational" if held else "Linear", 1)
     ops.beamIntegration("Lobatto", 1, 1, 3)
     for k in inside:
         ops.element("dispBeamColumn", k, k, k + 1, 1, 1, "-mass", mass)
     spacing = duration / (force.size - 1)
-    ops.timeSeries("Path", 1, "-dt", spacing, "-values", *(0.5 * force).tolist())
+    ops.timeSeries("Path", 1, "-dt", spacing, "-values", *(share * force).tolist())
     ops.pattern("Plain", 1, 1)
     ops.load(middle, 0.0, 1.0, 0.0)
     ops.constraints("Plain")
@@ -86,13 +100,15 @@ def strike(
 
     F = np.interp(np.linspace(0.0, 1.0, steps + 1), np.linspace(0.0, 1.0, force.size), force)
     work = float(np.sum(0.5 * (F[1:] + F[:-1]) * np.diff(w)))
-    moving = sum(mass * dx * ops.nodeVel(k, 2) ** 2 for k in range(2, middle))
-    moving += 0.5 * mass * dx * ops.nodeVel(middle, 2) ** 2
+    moving = sum(mass * dx * ops.nodeVel(k, i) ** 2 for k in range(2, elements + 1) for i in (1, 2))
+    moving += 0.5 * mass * dx * ops.nodeVel(elements + 1, 2) ** 2
+    moving *= 1.0 if halved else 0.5
     stored = 0.0
+    per_element = dx if halved else 0.5 * dx
     for k in inside:
-        for section, share in enumerate((1.0, 4.0, 1.0), start=1):
+        for section, weight in enumerate((1.0, 4.0, 1.0), start=1):
             place = (k, "section", section, "fiber")
             for y, area in fibres:
                 stress = ops.eleResponse(*place, y, 0.0, "stressStrain")[0]
-                stored += share / 6.0 * dx * area * stress**2 / E
+                stored += weight / 6.0 * per_element * area * stress**2 / E
     return float(w.max()), work - moving - stored

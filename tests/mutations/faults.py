@@ -133,6 +133,24 @@ FAULTS = (
         "push * (F - Q[mid - 1])",
     ),
     Fault(
+        "von Karman's beam: the axial force does not pull at the slope",
+        "von_karman.py",
+        "bent + P[i] - P[i - ONE]",
+        "bent",
+    ),
+    Fault(
+        "von Karman's beam: plastic strains leave the axial force as it is",
+        "von_karman.py",
+        "N_0 -= E * section.area[j] * strain",
+        "N_0 -= 0.0",
+    ),
+    Fault(
+        "von Karman's beam: rollers hold the axis",
+        "von_karman.py",
+        "case.axis_held_right > 0",
+        "case.support_right == 0",
+    ),
+    Fault(
         "spring-mass: half of the beam's mass", "lumped.py", "17.0 / 35.0 * beam,", "0.5 * beam,"
     ),
     Fault(

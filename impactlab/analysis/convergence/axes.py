@@ -160,6 +160,7 @@ _STEPS = {
     "leapfrog": "the square of the spacing (leapfrog)",
     "modal": "the spacing (modal scheme)",
     "timoshenko": "the spacing (Timoshenko beam)",
+    "von_karman": "the square of the spacing, coarse grids the spacing (von Karman's beam)",
 }
 """What the time step follows, by the scheme of bending beams or the model of others."""
 

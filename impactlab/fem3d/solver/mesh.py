@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 from impactlab.fem3d.solver.estimates import checked_patch, checked_size, uniform
 from impactlab.fem3d.solver.impulses import bulges
 from impactlab.model.checks import positive
-from impactlab.model.impact import MID_SPAN, Impact
+from impactlab.model.impact import HINGES, MID_SPAN, Impact
 from impactlab.types import Floats
 
 Integers = NDArray[np.int32]
@@ -136,13 +136,13 @@ def plane_faces(
 
 def _refuse_other_beams(impact: Impact) -> None:
     """Raise ValueError unless the beam is a pinned rectangular one with both planes of symmetry."""
-    for owner, field, plain in (
+    for owner, field, plain, *others in (
         (impact.beam, "shape", "rectangle"),
-        (impact.beam, "support_left", "pinned"),
-        (impact.beam, "support_right", "pinned"),
+        (impact.beam, "support_left", *HINGES),
+        (impact.beam, "support_right", *HINGES),
         (impact, "strike_position", MID_SPAN),
     ):
-        if (value := getattr(owner, field)) != plain:
+        if (value := getattr(owner, field)) not in (plain, *others):
             raise ValueError(
                 f"{type(owner).__name__}.{field} = {value!r}: the 3-D model is a quarter of a "
                 f"rectangular pinned beam struck at mid-span: set it to {plain!r}"

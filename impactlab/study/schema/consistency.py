@@ -16,7 +16,7 @@ from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
 from impactlab.model.case_table import between_nodes
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
-from impactlab.model.impact import MID_SPAN, OTHER_BEAM, SPRUNG_BEAM
+from impactlab.model.impact import HINGES, MID_SPAN, OTHER_BEAM, SPRUNG_BEAM
 from impactlab.model.parameters import PARAMETERS, SECTION, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.model.quantities import shown
@@ -207,7 +207,7 @@ def _other_beams(file: StudyFile, models: set[Value]) -> Reasons:
         for side in ("left", "right")
         for support in values_of(sampling, f"support_{side}", getattr(beam, f"support_{side}"))
     }
-    if supports == {"pinned"} and set(places) == {MID_SPAN}:
+    if supports <= set(HINGES) and set(places) == {MID_SPAN}:
         return
     if models - set(WAVE_MODELS):
         reason = f"must be {' or '.join(WAVE_MODELS)} {OTHER_BEAM}"

@@ -24,6 +24,7 @@ DERIVED = (
     *("compliance", "bending_compliance", "axis_compliance", "axis_bending"),
     *("width_stiffness", "width_inertia", "width_lever", "width_twist"),
     *("stress_along", "stress_across"),
+    *("axis_held_left", "axis_held_right"),
 )
 
 
@@ -57,7 +58,7 @@ def test_a_record_has_every_value_in_its_place(make_case):
         "support_right": SUPPORTS.index("free"),
     }
     expected = values | numbers_of_names | {"duration": 0.7}
-    expected |= dict.fromkeys((*DERIVED, *THICKNESSES), 0.0)
+    expected |= dict.fromkeys((*DERIVED, *THICKNESSES), 0.0) | {"axis_held_left": 1}
     assert not case["beam_profile"].any()
     names = {*CASE.names} - {*OF_SECTION, "beam_profile"}
     assert {name: case[name] for name in names} == expected

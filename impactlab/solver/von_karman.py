@@ -1,0 +1,305 @@
+"""The beam that stretches as it deflects: von Karman's strains, moderate rotations.
+
+With the axial displacement u, the strain of the axis e and the axial force N,
+
+    e = u_x + w_x^2/2, strain(z) = e - z w_xx,
+    rho A u_tt = N_x, rho A w_tt = M_xx + (N w_x)_x + p.
+
+Fibres over the whole depth yield under stretching and bending together. w, e, M and N are at nodes,
+u and the slope s half-way to the next one, so that with
+
+    e_i = (u_i - u_i-1)/dx + (s_i^2 + s_i-1^2)/4
+
+axial force and moment of a node do the work of the strains of one section, and no pattern of u is
+without strain. Forces are derivatives of the energy dx sum_i W(e_i, kappa_i): that of w_i is the
+difference of P = s (N_i + N_i+1)/2 beside those of the moments. The sum of energies is conserved by
+the semi-discrete beam. An end that is pinned or clamped holds the axis: u is odd and s^2 even about
+it, as at mid-span of a half beam. At a roller and at a free end N is 0. Nothing holds a beam
+with two of these along its axis, and nothing pushes it there: its axial momentum stays 0.
+
+While no fibre yields, N = N_0 + EA e and M = M_0 - EI kappa. A section remembers N_0, M_0, the
+strains at which its fibres were looked at last, and by how much one of them may be strained from
+there before it yields.
+
+Source: T. von Karman, Encyklopaedie der mathematischen Wissenschaften IV/4 (1910); for beams S.
+Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35 (both recalled).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from impactlab.solver.beam import FREE, SYMMETRIC, BeamGrid, BeamState, copies, is_end, mirror
+from impactlab.solver.contact_patch import spread_over_nodes
+from impactlab.solver.euler_bernoulli import deflected
+from impactlab.solver.fibre_plasticity import PlasticState, curvature, plastic_energy
+from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
+from impactlab.solver.section import (
+    FAR,
+    FibreSection,
+    cut_whole_section,
+    elastic_range,
+    make_whole_room,
+    return_mapping,
+)
+from impactlab.solver.state import BeamModel, State
+from impactlab.solver.strain_rate import RateLaw, overstress
+from impactlab.solver.types import ONE, Array, Index, Record
+
+_ROUND_OFF = 1e-12
+
+
+class Stretch(NamedTuple):
+    """The state of a von Karman beam besides BeamState; all arrays (last + 3,) but for `memory`.
+
+    stiffness: EA (N). start, stop: the sections with an axial force, from start to before stop.
+    held: whether the axis is held at the left end and at the right one. u: axial displacement, v =
+    dt u_t its increment, dv the last change of that (m), P = N w_x (N): half-way from node i to
+    i + 1 at index i. e, kappa (1/m), N (N), M (N m): at nodes, where the step began; N_0 (N).
+    memory: e and kappa (1/m) when the fibres of a node were looked at last, and the strain that no
+    fibre yields by from there, (last + 3, 3).
+    """
+
+    stiffness: float
+    start: int
+    stop: int
+    held: tuple[bool, bool]
+    u: Array
+    v: Array
+    dv: Array
+    P: Array
+    e: Array
+    kappa: Array
+    N: Array
+    M: Array
+    N_0: Array
+    memory: Array
+
+
+@allocating
+def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Stretch:
+    """Return the state at rest."""
+    size, stiffness = grid.last + 3, 0.0
+    for j in range(section.area.size):
+        stiffness += section.moduli.E * section.area[j]
+    left = case.axis_held_left > 0
+    right = case.axis_held_right > 0 or grid.right == SYMMETRIC
+    memory = np.zeros((size, 3))
+    memory[:, 2] = section.moduli.S_y / section.moduli.E
+    return Stretch(
+        stiffness,
+        grid.first - 1 if left else grid.first,
+        grid.stop + 1 if right else grid.stop,
+        (left, right),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+        memory,
+    )
+
+
+@inlined
+def _step(state: State, now: int, F: float) -> None:
+    _, section, grid, beam, plastic, stretch = state
+    u, w, N, M, P = stretch.u, beam.w, stretch.N, stretch.M, stretch.P
+    left, right, last = grid.first - 1, grid.stop, grid.last
+    if stretch.held[0]:
+        u[left - 1] = -u[left]
+    if stretch.held[1]:
+        u[right] = -u[right - 1]
+    per_dx, edge = 1.0 / grid.dx, section.z[0]
+    outside = _strain(w, now, stretch, plastic.M_0, section.stiffness, edge, per_dx)
+    if outside > 0.0:
+        _look_at_fibres(stretch, plastic, section, section.rate, grid.dt)
+    if grid.left == FREE:
+        M[1] = M[3]
+    if grid.right == FREE or grid.right == SYMMETRIC:
+        M[last + 1], N[last + 1] = M[last - 1], N[last - 1]
+    _stretch(w, now, stretch, grid.push, per_dx, left, right)
+    P[left - 1], P[right] = -P[left], -P[right - 1]
+    mid = grid.mid
+    _shift(w, now, beam.u, beam.du, M, P, grid.push, per_dx, F / copies(grid, mid), mid, 2)
+    if last > mid:
+        _shift(w, now, beam.u, beam.du, M, P, grid.push, per_dx, 0.0, last, mid + 1)
+    mirror(w, now, beam.u, grid)
+
+
+@vectorised
+def _strain(
+    w: Array, now: int, stretch: Stretch, M_0: Array, EI: float, edge: float, per_dx: float
+) -> float:
+    """Set strains, forces and moments of the sections; return how many have to be looked at.
+
+    edge: of the section, its distance from the axis (m).
+    """
+    u, e, kappa, memory = stretch.u, stretch.e, stretch.kappa, stretch.memory
+    N, M, N_0, EA = stretch.N, stretch.M, stretch.N_0, stretch.stiffness
+    outside = 0.0
+    for i in range(np.uint64(stretch.start), np.uint64(stretch.stop)):
+        before, after = (
+            (w[now, i] - w[now, i - ONE]) * per_dx,
+            (w[now, i + ONE] - w[now, i]) * per_dx,
+        )
+        e[i] = (u[i] - u[i - ONE]) * per_dx + 0.25 * (before * before + after * after)
+        kappa[i] = (after - before) * per_dx
+        strained = abs(e[i] - memory[i, 0]) + edge * abs(kappa[i] - memory[i, 1])
+        outside += 1.0 if strained > memory[i, 2] else 0.0
+        N[i] = N_0[i] + EA * e[i]
+        M[i] = M_0[i] - EI * kappa[i]
+    return outside
+
+
+@compiled
+def _look_at_fibres(
+    stretch: Stretch, plastic: PlasticState, section: FibreSection, rate: RateLaw | None, dt: float
+) -> None:
+    """Take the fibres of the sections where one may yield to the strains of these."""
+    e, kappa, memory, edge = stretch.e, stretch.kappa, stretch.memory, section.z[0]
+    for place in range(stretch.start, stretch.stop):
+        i = np.uint64(place)
+        if abs(e[i] - memory[i, 0]) + edge * abs(kappa[i] - memory[i, 1]) > memory[i, 2]:
+            before = memory[i, 0], memory[i, 1]
+            N_0, M_0, room, work = strain_fibres(
+                section, rate, e[i], kappa[i], before, dt, plastic.plastic_strain, plastic.peeq, i
+            )
+            stretch.N[i] += N_0 - stretch.N_0[i]
+            stretch.M[i] += M_0 - plastic.M_0[i]
+            stretch.N_0[i], plastic.M_0[i] = N_0, M_0
+            memory[i, 0], memory[i, 1], memory[i, 2] = e[i], kappa[i], room
+            plastic.flowed[i, 1] += work
+
+
+@compiled
+def strain_fibres(
+    section: FibreSection,
+    rate: RateLaw | None,
+    e: float,
+    kappa: float,
+    before: tuple[float, float],
+    dt: float,
+    plastic_strain: Array,
+    peeq: Array,
+    i: Index,
+) -> tuple[float, float, float, float]:
+    """Take the fibres of section i to the strain e of the axis and the curvature kappa (1/m).
+
+    Updates row i of plastic_strain and peeq, shape (sections, P). before: e and kappa at the
+    last look, where fibres flow by the rate a time dt (s) ago. Returns (N_0 in N, M_0 in N m, the
+    strain that no fibre yields by, work of the overstress in J/m).
+    """
+    z, (E, S_y, H_i, H_k) = section.z, section.moduli
+    N_0, M_0, room, work = 0.0, 0.0, FAR, 0.0
+    for j in range(z.size):
+        strain, slipped, now = plastic_strain[i, j], peeq[i, j], e - z[j] * kappa
+        if rate is not None and rate.D > 0.0:
+            Y, trial = S_y + H_i * slipped, E * now - (E + H_k) * strain
+            if abs(trial) > Y * (1.0 + _ROUND_OFF):
+                s, slip = overstress(abs(trial), Y, H_i, E + H_k, dt, rate)
+                was = trial - E * (now - before[0] + z[j] * before[1])
+                over = max(abs(was) - Y, 0.0)
+                work += 0.5 * (over + s * (Y + H_i * slip)) * slip * section.area[j]
+                strain, slipped = strain + math.copysign(slip, trial), slipped + slip
+        else:
+            strain, slipped = return_mapping(now, strain, slipped, E, S_y, H_i, H_k)
+        plastic_strain[i, j], peeq[i, j] = strain, slipped
+        N_0 -= E * section.area[j] * strain
+        M_0 -= section.lever[j] * strain
+        least, largest = elastic_range(strain, slipped, E, S_y, H_i, H_k)
+        room = min(room, largest - now, now - least)
+    return N_0, M_0, room, work
+
+
+@vectorised
+def _stretch(
+    w: Array, now: int, stretch: Stretch, push: float, per_dx: float, start: int, stop: int
+) -> None:
+    """Set P and move the axial displacement; start, stop: the ends. push = dt^2/(rho A dx)."""
+    u, v, dv, N, P = stretch.u, stretch.v, stretch.dv, stretch.N, stretch.P
+    for i in range(np.uint64(start), np.uint64(stop)):
+        P[i] = 0.5 * (N[i] + N[i + ONE]) * (w[now, i + ONE] - w[now, i]) * per_dx
+        dv[i] = push * (N[i + ONE] - N[i])
+        v[i] += dv[i]
+        u[i] += v[i]
+
+
+@vectorised
+def _shift(
+    w: Array,
+    now: int,
+    u: Array,
+    du: Array,
+    M: Array,
+    P: Array,
+    push: float,
+    per_dx: float,
+    F: float,
+    mid: int,
+    start: int,
+) -> None:
+    """Move the deflection from `start` to `mid`, where F acts; push = dt^2/(rho A dx)."""
+    after = 1 - now
+    for i in range(np.uint64(start), np.uint64(mid + 1)):
+        bent = (M[i - ONE] - 2.0 * M[i] + M[i + ONE]) * per_dx
+        du[i] = push * (bent + P[i] - P[i - ONE])
+    du[mid] += push * F
+    for i in range(np.uint64(start), np.uint64(mid + 1)):
+        u[i] += du[i]
+        w[after, i] = w[now, i] + u[i]
+
+
+@summing
+def _elastic_energy(
+    beam: BeamState, stretch: Stretch, M_0: Array, EI: float, grid: BeamGrid
+) -> float:
+    """Return the beam's energy in J after a step, at its beginning, without plastic strains'."""
+    u, du, v, dv, N, M = beam.u, beam.du, stretch.v, stretch.dv, stretch.N, stretch.M
+    moved, strained = 0.0, 0.0
+    for i in range(2, grid.last + 1):
+        share = 0.5 if is_end(grid, i) else 1.0
+        moved += share * u[i] * (u[i] - du[i])
+    for i in range(grid.first - 1, grid.stop):
+        moved += v[i] * (v[i] - dv[i])
+    for i in range(stretch.start, stretch.stop):
+        share = 0.5 if is_end(grid, i) else 1.0
+        pulled = (N[i] * N[i] - stretch.N_0[i] * stretch.N_0[i]) / stretch.stiffness
+        strained += share * (pulled + (M[i] * M[i] - M_0[i] * M_0[i]) / EI)
+    return 0.5 * grid.copies * grid.dx * (grid.mu * moved / grid.dt**2 + strained)
+
+
+@compiled
+def _curvature(state: State, now: int) -> float:
+    return curvature(state.beam.w, now, None, state.grid, np.uint64(state.grid.mid))
+
+
+@compiled
+def _energy(state: State, now: int, F: float, u_mid: float) -> float:
+    stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
+    EI = state.section.stiffness
+    elastic = _elastic_energy(state.beam, state.extra, state.plastic.M_0, EI, state.grid)
+    return stored + dissipated + elastic
+
+
+@compiled
+def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
+    ahead, _, _ = spread_over_nodes(state.beam, state.grid, now, F, a)
+    return ahead, 0.0
+
+
+MODEL = BeamModel(
+    _make,
+    _step,
+    _curvature,
+    _energy,
+    deflected,
+    _spread,
+    section=(make_whole_room, cut_whole_section),
+)

@@ -1,0 +1,287 @@
+"""The beam that stretches: closed forms, limits, energy, order, OpenSees and the other models."""
+
+import itertools
+import os
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import impactlab as il
+from impactlab.model.case_table import case_table
+from impactlab.solver.outputs import STRETCHING_LEFT_OUT
+from impactlab.solver.responses import stretching
+from impactlab.verification.cases import elastic, with_beam_material
+
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::impactlab.TooShortWarning", "ignore::impactlab.ImplausibleWarning"
+)
+
+PAPER = il.paper_impact(20.0)
+GRID = il.Discretisation(nodes=81, points=9)
+
+
+def held(impact, left="pinned", right="pinned", place=0.5, **section):
+    beam = replace(impact.beam, support_left=left, support_right=right, **section)
+    return replace(impact, beam=beam, beam_model="von_karman", strike_position=place)
+
+
+def small(impact):
+    return replace(impact, beam_model="euler_bernoulli")
+
+
+def heavy(mass, velocity, impact=PAPER):
+    sphere = replace(impact.sphere, mass=mass)
+    return replace(impact, sphere=sphere, velocity=velocity, gravity=0.0, contact="hertz")
+
+
+def effect(impact, duration, grid=GRID):
+    """Return what stretching takes off the largest deflection, in shares, and the other run."""
+    runs = [il.simulate(each, grid, duration=duration) for each in (small(impact), impact)]
+    without, with_it = (run.maximum_deflection.item() for run in runs)
+    assert np.isfinite(without)
+    return 1.0 - with_it / without, runs[0]
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "place"),
+    [
+        ("pinned", "pinned", 0.5),
+        ("clamped", "clamped", 0.5),
+        ("pinned", "roller", 0.5),
+        ("clamped", "free", 0.25),
+        ("free", "pinned", 0.0),
+        ("roller", "clamped", 0.75),
+    ],
+)
+def test_tiny_deflections_are_those_of_euler_and_bernoulli(left, right, place):
+    impact = held(replace(PAPER, velocity=1e-3, contact="hertz"), left, right, place)
+    grid = il.Discretisation(nodes=161)
+    runs = [il.simulate(each, grid, duration=2e-3, samples=401) for each in (impact, small(impact))]
+    for name in ("contact_force", "midspan_deflection", "sphere_displacement"):
+        stretched, expected = (run[name].values for run in runs)
+        # the time step is not quite the same
+        assert np.abs(stretched - expected).max() < 3e-6 * np.abs(expected).max(), name
+
+
+def test_left_and_right_are_alike():
+    """The mirrored impact has the same answers."""
+    runs = [
+        il.simulate(held(PAPER, *ends, place), GRID, duration=3e-3)
+        for *ends, place in (("clamped", "roller", 0.25), ("roller", "clamped", 0.75))
+    ]
+    for name in ("maximum_deflection", "plastic_dissipation", "peak_plastic_strain"):
+        assert runs[0][name].item() == pytest.approx(runs[1][name].item(), rel=1e-6), name
+
+
+def test_rollers_hold_nothing_and_other_models_know_none():
+    """Inertia alone pulls at a beam on rollers, and it yields as one that does not stretch."""
+    impact = held(PAPER, "roller", "roller")
+    runs = [il.simulate(each, GRID, duration=5e-3) for each in (impact, small(impact))]
+    for name, share in (("maximum_deflection", 1e-3), ("plastic_dissipation", 1e-2)):
+        assert runs[0][name].item() == pytest.approx(runs[1][name].item(), rel=share), name
+    strains = [run.plastic_strain.sel(x=0.39).values for run in runs]
+    assert np.abs(strains[0] - strains[1]).max() < 0.05 * np.abs(strains[1]).max()
+    assert strains[1][-1] > 0.01  # below, stretched
+    assert runs[1].remarks == 0
+    free = il.simulate(held(PAPER, "pinned", "roller"), GRID, duration=5e-3)
+    assert free.maximum_deflection == pytest.approx(runs[0].maximum_deflection, rel=1e-3)
+    for model, scheme in (
+        ("euler_bernoulli", "leapfrog"),
+        ("elastic", "modal"),
+        ("spring_mass", "leapfrog"),
+    ):
+        grid = il.Discretisation(nodes=21, scheme=scheme)
+        pair = [
+            il.simulate(
+                replace(held(PAPER, support, "pinned"), beam_model=model), grid, duration=1e-3
+            )
+            for support in ("roller", "pinned")
+        ]
+        assert (pair[0].midspan_deflection.values == pair[1].midspan_deflection.values).all()
+
+
+def pulled(beam, ends, N):
+    """Return the static deflection of mid-span and its force, by the axial force N (N).
+
+    The exact solution of EI w'''' = N w'' + P delta, with the span stretched by N L/(EA).
+    """
+    EI, L = beam.bending_stiffness, beam.span
+    k = np.sqrt(N / EI)
+
+    def slope(x):  # over P/(2 N), on the left half
+        if ends == "pinned":
+            return 1.0 - np.cosh(k * x) / np.cosh(0.5 * k * L)
+        return 1.0 - np.cosh(k * (0.25 * L - x)) / np.cosh(0.25 * k * L)
+
+    longer = quad(lambda x: slope(x) ** 2, 0.0, 0.5 * L)[0]
+    area = beam.section.area
+    over = np.sqrt(N * L / (beam.material.youngs_modulus * area) / longer)
+    return over * quad(slope, 0.0, 0.5 * L)[0], 2.0 * N * over
+
+
+@pytest.mark.parametrize("ends", ["pinned", "clamped"])
+def test_a_slow_push_follows_the_static_solution(ends):
+    """Up to twice the depth, where stretching carries much of the force."""
+    impact = held(elastic(heavy(1e5, 0.3)), ends, ends, depth=0.015)
+    run = il.simulate(impact, il.Discretisation(nodes=61), duration=0.1, samples=20001)
+    w, F, beam = run.midspan_deflection.values, run.contact_force.values, impact.beam
+    stiffness = {"pinned": 48, "clamped": 192}[ends] * beam.bending_stiffness / beam.span**3
+    for share, least in ((0.5, 1.03), (1.0, 1.15), (2.0, 1.5)):
+        deflection = share * beam.depth
+        N = brentq(lambda N: pulled(beam, ends, N)[0] - deflection, 1.0, 1e8)  # noqa: B023
+        expected = pulled(beam, ends, N)[1]
+        assert expected > least * stiffness * deflection
+        near = np.abs(w - deflection) < 0.1 * beam.depth  # several swings
+        force = F[near].mean() + np.polyfit(w[near], F[near], 1)[0] * (deflection - w[near].mean())
+        assert force == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize("ends", ["pinned", "clamped"])
+def test_a_beam_that_yields_all_through_is_a_string(ends):
+    """P = 4 N_p w/L with N_p = A S_y; every fibre is stretched, and the energy is balanced."""
+    impact = held(heavy(1e5, 0.3), ends, ends)
+    run = il.simulate(impact, il.Discretisation(nodes=41), duration=0.3, samples=20001)
+    w, F, beam = run.midspan_deflection.values, run.contact_force.values, impact.beam
+    late = w > 2.0 * beam.depth
+    expected = 4.0 * beam.section.area * beam.material.yield_stress * w / beam.span
+    assert w.max() > 3.0 * beam.depth
+    assert F[late].mean() == pytest.approx(expected[late].mean(), rel=0.02)
+    assert (run.plastic_strain.sel(x=0.39, method="nearest") > 0.0).all()
+    assert run.energy_error < 1e-3
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"isotropic_hardening_modulus": 4e9, "kinematic_hardening_modulus": 4e9},
+        {"rate_coefficient": 40.4, "rate_exponent": 5.0},
+    ],
+    ids=["hardening", "rate"],
+)
+@pytest.mark.parametrize("load", ["point", "contact_patch"])
+def test_energy_balances(changes, load):
+    impact = held(with_beam_material(replace(PAPER, load=load), **changes), "clamped", "pinned")
+    run = il.simulate(impact, il.Discretisation(nodes=101, points=12), duration=4e-3)
+    assert run.plastic_dissipation > 0.05 * 0.5 * run.sphere_mass * 20.0**2
+    assert run.energy_error < 1e-4
+
+
+def test_deflections_converge_at_second_order():
+    """The time step goes with the square of the spacing, and the energy's error with its own."""
+    impact = held(elastic(PAPER), "clamped", "pinned", depth=0.012)
+    runs = [
+        il.simulate(impact, il.Discretisation(nodes=nodes), duration=2e-3, samples=201)
+        for nodes in (81, 161, 321, 641)
+    ]
+    w = [run.midspan_deflection.values for run in runs]
+    assert w[-1].max() > impact.beam.depth
+    errors = [np.abs(coarse - fine).max() for coarse, fine in itertools.pairwise(w)]
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(2.0, abs=0.25)
+    assert runs[-1].energy_error < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("velocity", "expected"), [(5.0, 0.004), (10.0, 0.015), (15.0, 0.026), (20.0, 0.057)]
+)
+def test_what_held_ends_take_off_the_papers_deflection(velocity, expected):
+    """Within a quarter of an estimate without this model; from 2 % on, other models remark it."""
+    share, run = effect(held(replace(PAPER, velocity=velocity)), 5e-3)
+    assert share == pytest.approx(expected, rel=0.25)
+    assert bool(run.remarks.item() & STRETCHING_LEFT_OUT) == (expected > 0.02)
+
+
+@pytest.mark.parametrize(
+    ("impact", "duration"),
+    [
+        (held(replace(PAPER, velocity=5.0), depth=0.012), 0.02),
+        (held(elastic(replace(PAPER, velocity=1.0)), depth=0.012), 0.02),
+        (held(elastic(PAPER)), 0.01),
+        (held(elastic(PAPER), "clamped", "clamped"), 0.01),
+        (held(PAPER, "clamped", "clamped"), 0.01),
+        (held(replace(PAPER, velocity=5.0), "clamped", "clamped", depth=0.012), 0.02),
+        (held(PAPER, "clamped", "pinned"), 0.01),
+        (held(PAPER, place=0.25), 0.01),
+        (held(PAPER, place=0.1), 0.01),
+        (held(PAPER, "clamped", "clamped", place=0.25), 0.01),
+        (held(heavy(14.0, 2.0)), 0.02),
+        (held(heavy(14.0, 5.0), "clamped", "clamped"), 0.02),
+        (held(replace(PAPER, velocity=10.0), span=0.3), 0.01),
+    ],
+)
+def test_the_effect_of_stretching_is_estimated(impact, duration):
+    """Within a factor of three."""
+    share, run = effect(impact, duration)
+    case = case_table(small(impact), GRID, duration=duration)[0]
+    estimate = stretching(case, run.maximum_deflection.item())
+    assert 1 / 3 < estimate / share < 3
+    assert bool(run.remarks.item() & STRETCHING_LEFT_OUT) == (estimate > 0.02)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("left", "right", "place"),
+    [("pinned", "pinned", 0.5), ("clamped", "clamped", 0.5), ("clamped", "pinned", 0.375)],
+)
+def test_yielding_beam_is_that_of_opensees(left, right, place):
+    """Under the same force, extrapolated from two meshes; where `opensees` is installed."""
+    pytest.importorskip("openseespy")
+    from ..benchmarks.opensees_beam import strike
+
+    impact, duration = held(PAPER, left, right, place), 5e-3
+    grid = il.Discretisation(nodes=321, points=9)
+    run = il.simulate(impact, grid, duration=duration, samples=8001)
+    coarse, fine = (
+        np.array(
+            strike(impact.beam, run.contact_force.values, duration, n, 4000, held=True, place=place)
+        )
+        for n in (40, 80)
+    )
+    deflection, dissipation = 2.0 * fine - coarse
+    assert np.abs(fine / coarse - 1.0).max() < 0.03
+    assert run.midspan_deflection.max() == pytest.approx(deflection, rel=0.01)
+    assert run.plastic_dissipation == pytest.approx(dissipation, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"support_left": "elastic", "stiffness_left": 1e6}, "euler_bernoulli or elastic with ela"),
+        ({"contact_compliance": "strip"}, "set beam_model: timoshenko"),
+        ({"scheme": "modal"}, "beam_model = 'von_karman' has 'leapfrog' alone"),
+    ],
+)
+def test_what_the_beam_does_not_have_is_refused(changes, message):
+    beam = {name: value for name, value in changes.items() if "left" in name}
+    scheme = changes.get("scheme", "leapfrog")
+    rest = {name: value for name, value in changes.items() if name not in {*beam, "scheme"}}
+    grid = il.Discretisation(nodes=41, scheme=scheme)
+    impact = replace(PAPER, beam=replace(PAPER.beam, **beam))
+    with pytest.raises(ValueError, match=message):
+        il.simulate(replace(impact, beam_model="von_karman", **rest), grid, duration=1e-3)
+
+
+PLAIN = """
+import dataclasses, impactlab as il
+impact = dataclasses.replace(il.paper_impact(20.0), beam_model="von_karman")
+run = il.simulate(impact, il.Discretisation(nodes=11, points=5), duration=2e-4)
+print(run.energy_error.item(), run.midspan_deflection.values[-1].item())
+"""
+
+
+def test_the_kernel_runs_as_plain_python():
+    answers = []
+    for setting in ("0", "1"):
+        process = subprocess.run(
+            [sys.executable, "-W", "ignore", "-c", PLAIN],
+            env=os.environ | {"NUMBA_DISABLE_JIT": setting},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        answers.append([float(value) for value in process.stdout.split()])
+    assert answers[0] == pytest.approx(answers[1], rel=1e-6)
