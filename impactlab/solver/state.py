@@ -55,7 +55,8 @@ class BeamModel(NamedTuple):
     all. beneath(state, now, F): how far the axis lies below that, m; lift(state, contact, F): how
     far the contact lifts it, m. moments(state, now): at mid-span, along the beam and across its
     width, both times the width, N m. bend_back(state, now, contact, growth): let the
-    kink of kink.py grow by so much, rad.
+    kink of kink.py grow by so much, rad. settle(state): put it to rest, as its plastic strains
+    leave it (settle.py).
     """
 
     make: Callable[..., Any]
@@ -73,3 +74,4 @@ class BeamModel(NamedTuple):
     lift: Callable[..., float] | None = None
     moments: Callable[..., tuple[float, float]] | None = None
     bend_back: Callable[..., None] | None = None
+    settle: Callable[..., None] | None = None
