@@ -162,7 +162,7 @@ def _shakedown(answers: Mapping[str, np.ndarray[Any, Any]]) -> np.ndarray[Any, A
 
     See variables.SHAKEDOWN.
     """
-    grows = np.zeros(1, bool)
+    grows = np.zeros((1, 1), bool)
     for name in ("permanent_indentation", "plastic_dissipation"):
         values = answers[f"{name}_over_strikes"]
         growth = np.diff(values, prepend=0.0)

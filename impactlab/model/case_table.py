@@ -34,8 +34,8 @@ from impactlab.solver import (
 from impactlab.solver.types import CASE, PROFILE
 
 NO_REST = (
-    "must be 1 of a beam that its ends let fly, for it does not come to rest: change it, or hold an "
-    "end (support_left, support_right)"
+    "must be 1 of a beam that its ends let fly, for it does not come to rest: change it, or hold "
+    "an end (support_left, support_right)"
 )
 """Why such a beam cannot be struck again."""
 _ON_NODE = 1e-6

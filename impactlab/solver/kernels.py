@@ -81,21 +81,36 @@ def _keep_profiles(
             peeq[r, i, j] = state.plastic.peeq[node, j]
 
 
-def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
-    """Return a function that solves a case; extended: see _kernel."""
-    march, lift = time_loop(model, extended), model.lift
-    largest_deflection = None if model.flight is None else model.flight.largest
-    settle = model.settle
+def _rest(model: BeamModel) -> Callable[..., int]:
+    """Return a function that puts the beam to rest after a strike."""
+    settle, lift = model.settle, model.lift
 
     @compiled
-    def note(case: Record, contact: Record, events: Record, row: Array, state: State) -> None:
-        """Fill in what outputs.SERIES has of a strike; the beam is at rest."""
+    def rest(
+        case: Record, contact: Record, events: Record, series: Array, state: State, strike: int
+    ) -> int:
+        """Fill in the row of outputs.SERIES, if any; return which row of beam.w is the last."""
+        if settle is not None:
+            settle(state)
+        events.v_mid = 0.0
         pair, section, grid, beam, plastic = state[:5]
         dent, w = contact.delta_r, beam.w[0, grid.mid] - kink.height(grid, contact.kink)
         if lift is not None:
             dent += lift(state, contact, 0.0)
-        _, dissipated = plastic_energy(plastic, section, grid)
-        responses.read_strike(row, dent, w, dissipated, case, events, contact, pair)
+        if strike < series.shape[0]:
+            _, yielded = plastic_energy(plastic, section, grid)
+            responses.read_strike(series[strike], dent, w, yielded, case, events, contact, pair)
+        if strike == case.strikes - 1:
+            kink.straighten(beam.w, grid, contact.kink)
+        return int(np.int64(0))
+
+    return rest
+
+
+def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
+    """Return a function that solves a case; extended: see _kernel."""
+    march, rest, lift = time_loop(model, extended), _rest(model), model.lift
+    largest_deflection = None if model.flight is None else model.flight.largest
 
     @inlined
     def run(
@@ -120,13 +135,8 @@ def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
             if now < 0:
                 answer.status = DIVERGED
                 return now
-            if case.strikes > 1 and settle is not None:
-                settle(state)
-                now, events.v_mid = int(np.int64(0)), 0.0
-                if series.shape[0] > 0:
-                    note(case, contact, events, series[strike], state)
-        if case.strikes > 1:
-            kink.straighten(state.beam.w, state.grid, contact.kink)
+            if case.strikes > 1:
+                now = rest(case, contact, events, series, state, strike)
         answer.energy_error = events.energy_error
         if answer.energy_error > WORST_ENERGY_ERROR:
             answer.status = ENERGY_OUT_OF_BALANCE
@@ -156,9 +166,9 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     zeros, CONTACT and EVENTS records to work in. samples: shape (R, 5, S), filled with force,
     mid-span deflection, mid-span curvature, sphere displacement and indentation at S equal
     intervals from 0 to the duration, of the last strike; S = 0 for none. series: shape (R, n,
-    len(SERIES)), filled with outputs.SERIES of each of n strikes; n = 0 for none. deflection (R, nodes), plastic_strain and peeq
-    (R, nodes, P // 2): filled with the beam's final state; length 0 for none. A run that diverges
-    leaves NaN and its status.
+    len(SERIES)), filled with outputs.SERIES of each of n strikes; n = 0 for none. deflection
+    (R, nodes), plastic_strain and peeq (R, nodes, P // 2): filled with the beam's final state, at
+    rest after several strikes; length 0 for none. A run that diverges leaves NaN and its status.
 
     A record does not keep its array alive in compiled code, so kernels make no arrays of records:
     those of all runs are the caller's, who holds them until this returns.
@@ -202,7 +212,9 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
                 else:
                     extra = make(case, section, grid)
                 state = State(pair, section, grid, beam, plastic, extra)
-                now = run(case, answers[r], contacts[r], events[r], samples[r], series[r], state, steps)
+                now = run(
+                    case, answers[r], contacts[r], events[r], samples[r], series[r], state, steps
+                )
                 if now < 0:
                     samples[r] = np.nan
                     continue

@@ -102,9 +102,9 @@ def _at_touch(model: BeamModel) -> Callable[..., tuple[float, float]]:
             w_s += pair.bending * elastic
         if sag is not None:
             w_s += sag(state)
-        kept, lost = contact_history.energies(contact, pair, contact.delta_r, fast)
+        stored, lost = contact_history.energies(contact, pair, contact.delta_r, fast)
         in_beam = beam_energy(state, 0, 0.0, 0.0)
-        return w_s, in_beam + kept + lost - case.sphere_mass * case.gravity * w_s
+        return w_s, in_beam + stored + lost - case.sphere_mass * case.gravity * w_s
 
     return at_touch
 

@@ -62,8 +62,8 @@ def _end(grid: BeamGrid, kind: int, turn: float, lift: float, EI: float) -> tupl
 
     And against deflection (N/m), -1 where it has none.
     """
-    holds = 1.0 if kind == CLAMPED or kind == SYMMETRIC else turn
-    spring = -1.0 if kind == CLAMPED or kind == PINNED else 0.5 * EI * lift / grid.dx**3
+    holds = 1.0 if kind in (CLAMPED, SYMMETRIC) else turn
+    spring = -1.0 if kind in (CLAMPED, PINNED) else 0.5 * EI * lift / grid.dx**3
     return 2.0 * EI / grid.dx * holds, spring
 
 
@@ -149,9 +149,7 @@ def yield_on(
 
 
 @compiled
-def settle(
-    beam: BeamState, plastic: PlasticState, section: FibreSection, grid: BeamGrid
-) -> None:
+def settle(beam: BeamState, plastic: PlasticState, section: FibreSection, grid: BeamGrid) -> None:
     """Put Euler-Bernoulli's beam to rest."""
     end_tangents(beam, plastic, section, grid)
     for _ in range(ROUNDS):

@@ -53,7 +53,6 @@ from impactlab.solver.state import State
 from impactlab.solver.timoshenko import Shear
 from impactlab.solver.types import ONE, Array, Record
 
-
 _AT_REST = 1e-13
 """Share by which the bending across the width still changes at rest."""
 

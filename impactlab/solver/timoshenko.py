@@ -227,9 +227,7 @@ def rest(
     M_0: Array,
 ) -> None:
     """Let nothing move, in the static shape under the moments M_0 (N m)."""
-    Q = static_shape(
-        beam.w[0], shear.psi, M_0, section.stiffness, 1.0 / shear.stiffness, grid
-    )
+    Q = static_shape(beam.w[0], shear.psi, M_0, section.stiffness, 1.0 / shear.stiffness, grid)
     for i in range(shear.Q.size):
         shear.Q[i], shear.spin[i], shear.d_spin[i] = Q, 0.0, 0.0
     rest_nodes(beam, grid)

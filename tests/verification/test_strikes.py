@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numba
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -11,8 +12,9 @@ from impactlab.verification.solutions.contact_laws import law_on_half_space
 
 from ..end_modes import held
 
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
 FLOATING = replace(il.paper_impact(5.0), gravity=0.0)
-SERIES = ("permanent_indentation", "peak_force", "restitution", "contact_dissipation")
 
 
 def series(run, name):
@@ -34,6 +36,8 @@ def series(run, name):
 def test_a_rigid_beam_is_dented_as_the_energies_ask(law, velocity):
     """A strike first takes what the one before gave back, then what loading on takes."""
     impact = replace(FLOATING, velocity=velocity, contact=law, beam_model="rigid", strikes=5)
+    steel = replace(impact.sphere.material, youngs_modulus=impact.beam.material.youngs_modulus)
+    impact = replace(impact, sphere=replace(impact.sphere, material=steel))
     run = il.simulate(impact, il.Discretisation(nodes=5), duration="1 ms", samples=2)
     half_space, mass = law_on_half_space(impact), impact.sphere.total_mass
     energy = 0.5 * mass * velocity**2
@@ -46,7 +50,7 @@ def test_a_rigid_beam_is_dented_as_the_energies_ask(law, velocity):
             )
             forces.append(half_space.loading_force(deepest))
         else:  # a law that creates energy: on the unloading curve, which stays
-            force, end, n = half_space.unloading(deepest)
+            force, _, n = half_space.unloading(deepest)
             forces.append(force * (energy / half_space.released_work(deepest)) ** (n / (n + 1)))
         released = half_space.released_work(deepest)
         spent = half_space.loading_work(deepest) - released
@@ -77,49 +81,192 @@ def test_strikes_that_leave_nothing_are_alike(model, scheme):
     impact = replace(FLOATING, contact="hertz", velocity=1.0, beam_model=model, strikes=3)
     grid = il.Discretisation(nodes=41, scheme=scheme)
     once, thrice = (
-        il.simulate(replace(impact, strikes=n), grid, duration="11 ms", samples=2)
-        for n in (1, 3)
+        il.simulate(replace(impact, strikes=n), grid, duration="22 ms", samples=2) for n in (1, 3)
     )
-    names = ("maximum_indentation", "time_of_peak_force", "contact_duration", "maximum_deflection",
-             "impulse", "number_of_contacts", "total_contact_time", *SERIES[1:3])
+    names = (
+        "maximum_indentation",
+        "time_of_peak_force",
+        "contact_duration",
+        "maximum_deflection",
+        "impulse",
+        "number_of_contacts",
+        "total_contact_time",
+        "peak_force",
+    )
     for name in names:
-        assert thrice[name].item() == pytest.approx(once[name].item(), rel=1e-9), name
+        assert thrice[name].item() == pytest.approx(once[name].item(), rel=1e-4), name
     assert thrice.shakedown_strike.item() == 1
-    assert np.ptp(series(thrice, "peak_force")) < 1e-9 * once.peak_force.item()
+    for name in ("peak_force", "restitution"):
+        assert np.ptp(series(thrice, name)) < 1e-9 * thrice[name].item()
     assert np.abs(series(thrice, "residual_deflection")).max() < 1e-12
-    assert thrice.energy_error.item() == pytest.approx(once.energy_error.item(), rel=1e-6)
+    assert thrice.energy_error.item() < 1e-3
 
 
-CORRECTED = replace(il.corrected_impact(20.0), gravity=0.0)
-TIMOSHENKO = replace(FLOATING, beam_model="timoshenko", velocity=20.0)
 YIELDING = replace(FLOATING, velocity=20.0)
+TIMOSHENKO = replace(YIELDING, beam_model="timoshenko")
+ELASTIC_END = {"stiffness_left": 5e7, "rotational_stiffness_left": 2e5}
+
+
+def at_rest(impact, grid, plastic_strain):
+    """Return the deflection (m) of least elastic energy, by least squares, under plastic strains.
+
+    Of rows that are roots of the energies of nodes, half-way slopes (with shear) and springs.
+    """
+    beam, nodes = impact.beam, grid.nodes
+    z, area = beam.section.cut(grid.rule, grid.points)
+    EI, dx = beam.material.youngs_modulus * np.sum(area * z**2), beam.span / (nodes - 1)
+    bent = -plastic_strain @ (area * z) / np.sum(area * z**2)
+    deflects, slopes = np.eye(nodes), np.diff(np.eye(nodes), axis=0) / dx
+    shears = impact.beam_model == "timoshenko"
+    if shears:
+        deflects = np.hstack([deflects, np.zeros((nodes, nodes - 1))])
+        turns = np.eye(2 * nodes - 1)[nodes:]
+        gap = np.hstack([slopes, np.zeros((nodes - 1, nodes - 1))]) - turns
+        slopes = turns
+    rows = [np.sqrt(EI * dx) * np.diff(slopes, axis=0) / dx]
+    rights = [np.sqrt(EI * dx) * bent[1:-1]]
+    for side, end, inward in (("left", 0, 1), ("right", -1, -1)):
+        kind = getattr(beam, f"support_{side}")
+        if kind == "clamped":
+            rows.append(np.sqrt(0.5 * EI * dx) * inward * 2.0 * slopes[[end]] / dx)
+            rights.append(np.sqrt(0.5 * EI * dx) * bent[[end]])
+        if kind == "elastic":
+            lift, turn = (getattr(beam, f"{of}stiffness_{side}") for of in ("", "rotational_"))
+            series = 1.0 / (1.0 / turn + dx / (2.0 * EI))
+            rows += [np.sqrt(lift) * deflects[[end]], np.sqrt(series) * slopes[[end]]]
+            rights += [[0.0], [0.0]]
+        if kind in ("pinned", "clamped"):
+            rows.append(1e9 * deflects[[end]])
+            rights.append([0.0])
+    if shears:
+        modulus = beam.material.youngs_modulus / (2.0 + 2.0 * beam.material.poissons_ratio)
+        stiffness = beam.shear_correction * modulus * beam.section.area
+        rows.append(np.sqrt(stiffness * dx) * gap)
+        rights.append(np.zeros(nodes - 1))
+    matrix, right = np.vstack(rows), np.concatenate(rights)
+    size = np.linalg.norm(matrix, axis=0)
+    return (np.linalg.lstsq(matrix / size, right, rcond=1e-15)[0] / size)[:nodes]
+
+
+@pytest.mark.parametrize("place", [0.25, 0.5])
+@pytest.mark.parametrize(
+    "ends",
+    [
+        ("pinned", "pinned"),
+        ("clamped", "clamped"),
+        ("pinned", "clamped"),
+        ("clamped", "free"),
+        ("elastic", "clamped"),
+    ],
+)
+@pytest.mark.parametrize(
+    ("impact", "scheme"),
+    [(YIELDING, "leapfrog"), (YIELDING, "modal"), (TIMOSHENKO, "leapfrog")],
+    ids=["leapfrog", "modal", "timoshenko"],
+)
+def test_rest_has_the_least_elastic_energy(impact, scheme, ends, place):
+    if "elastic" in ends:
+        if impact is TIMOSHENKO:
+            pytest.skip("has no elastic ends")
+        impact = replace(impact, beam=replace(impact.beam, **ELASTIC_END))
+    impact = held(*ends, place, impact)
+    grid = il.Discretisation(nodes=41, scheme=scheme)
+    run = il.simulate(replace(impact, strikes=2), grid, duration="25 ms", samples=2)
+    expected = at_rest(impact, grid, run.plastic_strain.values)
+    largest = np.abs(expected).max()
+    assert largest > 1e-3
+    bound = 1e-7 if scheme == "leapfrog" else 0.02  # of modes left out, at hinges
+    assert run.deflection.values == pytest.approx(expected, abs=bound * largest)
+    under = expected[round(40 * place)]
+    dents = series(run, "residual_deflection")
+    assert dents[-1] == pytest.approx(under, rel=bound, abs=bound * largest)
+    assert run.energy_error.item() < 5e-3
+
+
+def test_a_strip_at_rest_is_the_mean_of_its_swing():
+    """Under a window that lets no swing through; it still yields a little."""
+    impact = replace(il.corrected_impact(20.0), gravity=0.0, strikes=2)
+    grid = il.Discretisation(nodes=41)
+    run = il.simulate(impact, grid, duration="0.4 s", samples=40001)
+    w = run.midspan_deflection.values[10001:]
+    assert np.abs(run.contact_force.values[10001:]).max() == 0.0
+    window = np.blackman(w.size)
+    mean = np.sum(window * w) / np.sum(window)
+    assert series(run, "residual_deflection")[-1] == pytest.approx(mean, rel=5e-3)
+    assert run.energy_error.item() < 5e-3
+
+
+@pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="takes minutes as plain Python")
+def test_both_schemes_agree_on_ten_strikes():
+    impact = replace(il.paper_impact(5.0), strikes=10)
+    grids = (
+        il.Discretisation(nodes=201),
+        il.Discretisation(nodes=129, scheme="modal"),
+    )
+    leapfrog, modal = (il.simulate(impact, grid, duration="12 ms", samples=2) for grid in grids)
+    for run in (leapfrog, modal):
+        growth = np.diff(series(run, "permanent_indentation"), prepend=0.0)
+        assert (growth > 0).all()
+        assert (np.diff(growth)[3:] < 0).all()
+        assert np.isnan(run.shakedown_strike.item())
+        assert run.energy_error.item() < 1e-3
+    for name, rel in (
+        ("permanent_indentation", 0.015),
+        ("contact_dissipation", 0.025),
+        ("peak_force", 0.02),
+    ):
+        assert series(modal, name) == pytest.approx(series(leapfrog, name), rel=rel), name
+
+
+def test_studies_have_the_series_of_one_run():
+    """Answers of the last strike are those of as many strikes; energies and dents add up."""
+    impact = replace(il.paper_impact(1.0), strikes=30)
+    grid = il.Discretisation(nodes=41, scheme="modal")
+    run = il.simulate(impact, grid, duration="15 ms", samples=2)
+    many = il.simulate_many(
+        impact, grid, duration="15 ms", varied={"strikes": [30, 8], "velocity": [1.0, 0.5]}
+    )
+    for name in ("permanent_indentation", "peak_force", "restitution", "contact_dissipation"):
+        assert many[name].values[0] == series(run, name)[-1] == run[name].item()
+    assert many.strikes.values.tolist() == [30, 8]
+    assert run.strike.values.tolist() == list(range(1, 31))
+    dents = series(run, "permanent_indentation")
+    grown = np.flatnonzero(np.diff(dents) > 1e-3 * dents[1:])
+    assert run.plastic_dissipation.item() == 0.0
+    assert run.shakedown_strike.item() == grown[-1] + 3
+
+
+def test_a_strike_that_does_not_end_says_so():
+    impact = replace(il.paper_impact(5.0), strikes=3)
+    grid = il.Discretisation(nodes=41, scheme="modal")
+    with pytest.warns(il.TooShortWarning, match="too short for strikes before the last: "):
+        run = il.simulate(impact, grid, duration="0.1 ms", samples=2)
+    assert "earlier_strike_unfinished" in run.status.flag_meanings
+    assert run.status.item() == 512
+    assert np.isnan(run.peak_force.item())
+    assert np.isnan(series(run, "peak_force")).all()
+    assert np.isfinite(run.contact_force.values).all()
 
 
 @pytest.mark.parametrize(
-    ("impact", "scheme"),
+    ("change", "message"),
     [
-        (YIELDING, "leapfrog"),
-        (YIELDING, "modal"),
-        (TIMOSHENKO, "leapfrog"),
-        (CORRECTED, "leapfrog"),
-        *((held(*ends, 0.25, YIELDING), scheme) for ends in (
-            ("clamped", "clamped"), ("pinned", "clamped"), ("clamped", "free"),
-        ) for scheme in ("leapfrog", "modal")),
-        (held("clamped", "pinned", 0.25, TIMOSHENKO), "leapfrog"),
-        (held("clamped", "clamped", 0.5, replace(CORRECTED, contact_prestress="ignored")),
-         "leapfrog"),
+        ({"strikes": 0}, r"^Impact\.strikes = 0: must be a whole number of at least 1"),
+        ({"strikes": 1.5}, r"^Impact\.strikes = 1\.5: must be a whole number"),
+        (
+            {"beam_model": "solid"},
+            r"^Impact\.strikes = 2: must be 1 with a model of the beam other",
+        ),
+        ({"beam": "free"}, r"^strikes = 2: must be 1 of a beam that its ends let fly"),
+        ({"frames": 5}, r"^simulate\.frames = 5: must be 0 with several strikes"),
     ],
 )
-def test_rest_is_the_mean_of_the_swing(impact, scheme):
-    """Of the free motion, after the contacts, under a window that lets no swing through."""
-    grid = il.Discretisation(nodes=41, scheme=scheme)
-    swinging = il.simulate(impact, grid, duration="120 ms", samples=24001)
-    rested = il.simulate(replace(impact, strikes=2), grid, duration="12 ms", samples=2)
-    w = swinging.midspan_deflection.values[4001:]
-    window = np.blackman(w.size)
-    assert np.abs(swinging.contact_force.values[2401:]).max() == 0.0
-    mean = np.sum(window * w) / np.sum(window)
-    rest = series(rested, "residual_deflection")[0]
-    assert abs(rest) > 1e-4
-    assert rest == pytest.approx(mean, rel=2e-3)
-    assert rested.energy_error.item() < 5e-3
+def test_what_cannot_be_struck_again_is_refused(change, message):
+    base = replace(il.paper_impact(), strikes=2)
+    frames = change.pop("frames", 0)
+    if "beam" in change:
+        change = {"beam": held("free", "pinned", 0.5).beam}
+    with pytest.raises(ValueError, match=message):
+        il.simulate(
+            replace(base, **change), il.Discretisation(nodes=41), duration="1 ms", frames=frames
+        )
