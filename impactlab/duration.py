@@ -17,6 +17,7 @@ _SWINGS = {
     outputs.DEFLECTION_STILL_GROWING: 0.75,
     outputs.IN_CONTACT_AT_END: 1.0,
     outputs.SPHERE_NOT_LEAVING: 1.0,
+    outputs.EARLIER_STRIKE_UNFINISHED: 1.0,
 }
 """By status bit of a short duration: how many swings a run lasts that gives the response."""
 
@@ -38,7 +39,9 @@ def too_short(cases: Any, status: Any) -> str:
     missing = {
         entry.name: entry.missing and FAILURES[entry.missing] for entry in RESPONSES.values()
     }
-    names = ", ".join(name for name, reason in missing.items() if reason and reason[0] in bits)
+    names = [name for name, reason in missing.items() if reason and reason[0] in bits]
+    if outputs.EARLIER_STRIKE_UNFINISHED in bits:
+        names += ["strikes before the last"]
     swings, cases = np.where(bits, list(_SWINGS.values()), 0.0).max(axis=1)[short], cases[short]
     seconds = cases[0]["duration"]
     lasting = contact_time(cases) + swings * swing(cases)
@@ -46,5 +49,6 @@ def too_short(cases: Any, status: Any) -> str:
     slow = cases["velocity"] < 3.0 * cases["gravity"] * swing(cases)
     if ((swings == 1.0) & (slow | (lasting < seconds))).any():
         remedy = "try a longer one; at its end, too, the beam may be moving up behind the sphere"
+    short_for = ", ".join(names)
     runs = f" in {cases.size:,} of {status.size:,} runs" if status.size > 1 else ""
-    return f"duration = {engineering(seconds, 's')} is too short for {names}{runs}: {remedy}"
+    return f"duration = {engineering(seconds, 's')} is too short for {short_for}{runs}: {remedy}"

@@ -29,6 +29,7 @@ from impactlab.solver.stability import discretise
 from impactlab.variables import (
     PROFILES,
     RESPONSES,
+    SHAKEDOWN,
     VARIABLES,
     answer_variables,
     described,
@@ -61,14 +62,17 @@ def simulate(
         Length of `time`, equally spaced from 0 to the duration.
     frames : int, default 0
         Length of `field_time`, on which deflection and strains are kept (0: at the end alone). It
-        takes half as many times as long.
+        takes half as many times as long. Only for a single strike.
 
     Returns
     -------
     xarray.Dataset
         Histories on `time`, strains on `x` and `z` (with `frames`, also on `field_time`), every
         response as a scalar, `status` and `remarks`, in SI units. A response that the run could not
-        give is NaN, and `status` says why; `remarks` qualifies the others.
+        give is NaN, and `status` says why; `remarks` qualifies the others. With several strikes,
+        each of which takes the duration, histories are those of the last one, `deflection` is that
+        at rest, what each strike left is on `strike` (NaN from the one that failed on), and
+        `shakedown_strike` says from which on nothing grows.
 
     Raises
     ------
@@ -88,12 +92,22 @@ def simulate(
     >>> run = il.simulate(il.paper_impact("2 m/s"), grid, duration="10 ms")
     >>> f"{run.peak_force.item() / 1e3:.0f} kN, {run.contact_force.sizes['time']} times"
     '24 kN, 2001 times'
+
+    The dent that ten strikes leave, each with the beam at rest again:
+
+    >>> ten = dataclasses.replace(il.paper_impact("5 m/s"), strikes=10)
+    >>> grid = il.Discretisation(nodes=65, scheme="modal")
+    >>> run = il.simulate(ten, grid, duration="10 ms")
+    >>> run.permanent_indentation_over_strikes.sizes["strike"]
+    10
     """
     _check_order(impact, discretisation)
     seconds = _seconds(duration)
     grid = discretisation or Discretisation()
     samples = integer("simulate", "samples", samples, 2)
     frames = frames and integer("simulate", "frames", frames, 2)
+    if frames and impact.strikes > 1:
+        raise ValueError(f"simulate.frames = {frames}: must be 0 with several strikes")
     _warn(numbers(impact, grid))
     run = run_dataset(impact, grid, duration=seconds, samples=samples, frames=frames)
     if int(run["status"]):
@@ -115,13 +129,18 @@ def run_dataset(
     """
     grid = discretisation.resolved([impact.beam_model])
     cases = case_table(impact, grid, duration=duration)
-    answers = solve(cases, samples=samples, profiles=True)
+    several = impact.strikes if impact.strikes > 1 else 0
+    answers = solve(cases, samples=samples, profiles=True, strikes=several)
     axes = {"time": np.linspace(0.0, duration, samples)}
+    if several:
+        axes["strike"] = np.arange(1.0, several + 1.0)
     if frames:
         axes["field_time"], fields = _fields_over_time(cases, frames)
         answers |= fields
     axes |= profile_coordinates(impact, grid)
     variables = answer_variables(answers, tuple(RESPONSES), ())
+    if several:
+        variables["shakedown_strike"] = ("run",), _shakedown(answers)
     fixed = flatten(impact, grid) | {"sphere_mass": impact.sphere.total_mass, "duration": duration}
     fixed["shear_coefficient"] = impact.beam.shear_correction
     blank = _blank_run(
@@ -136,6 +155,21 @@ def run_dataset(
     for name, value in values.items():
         dataset.variables[name].data = value
     return dataset
+
+
+def _shakedown(answers: Mapping[str, np.ndarray[Any, Any]]) -> np.ndarray[Any, Any]:
+    """Return the strike of each run from which on nothing grows, NaN for none; answers: (runs, n).
+
+    See variables.SHAKEDOWN.
+    """
+    grows = np.zeros((1, 1), bool)
+    for name in ("permanent_indentation", "plastic_dissipation"):
+        values = answers[f"{name}_over_strikes"]
+        growth = np.diff(values, prepend=0.0)
+        grows = grows | ~(np.abs(growth) <= SHAKEDOWN * np.abs(values))
+    count = grows.shape[1]
+    last = count - np.argmax(grows[:, ::-1], axis=1)  # the last strike in which something grows
+    return np.where(grows[:, -1], np.nan, np.where(grows.any(axis=1), last + 1.0, 1.0))
 
 
 @functools.lru_cache(maxsize=8)

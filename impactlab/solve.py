@@ -19,10 +19,10 @@ from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.jit import FOLDER
 from impactlab.solver.kernels import is_extended, kernel_of
-from impactlab.solver.outputs import blank
+from impactlab.solver.outputs import SERIES, blank
 from impactlab.solver.section import FibreSection, make_section
 from impactlab.solver.types import VON_KARMAN
-from impactlab.variables import HISTORIES
+from impactlab.variables import BY_STRIKE, HISTORIES
 
 _COMPILE = """
 import impactlab as il
@@ -35,14 +35,15 @@ solve(case_table(il.paper_impact(), grid, duration=1e-6, varied=varied))
 
 
 def solve(
-    cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = False
+    cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = False, strikes: int = 0
 ) -> dict[str, np.ndarray[Any, Any]]:
     """Run the kernels over a case table, on the calling thread and without the GIL.
 
     samples: length of each history (0: none). profiles: keep the fields along the beam, for
-    which all cases must share nodes and points; raises ValueError where they do not. Returns by
-    name, of R runs: the fields of solver.outputs.RESPONSE, (R,); histories, (R, samples); profiles,
-    (R, nodes, points), or (R, nodes) for the deflection.
+    which all cases must share nodes and points; raises ValueError where they do not. strikes: the
+    number that all cases have, to keep what solver.outputs.SERIES has of each. Returns by name, of
+    R runs: the fields of solver.outputs.RESPONSE, (R,); histories, (R, samples); profiles,
+    (R, nodes, points), or (R, nodes) for the deflection; series, (R, strikes).
     """
     if profiles and any(np.unique(cases[name]).size > 1 for name in ("nodes", "points", "rule")):
         raise ValueError("profiles need the same nodes, points and rule in every run")
@@ -51,10 +52,11 @@ def solve(
     table = fibre_table(cases)
     responses = blank(runs)
     histories = np.full((runs, len(HISTORIES), samples), np.nan)
+    series = np.full((runs, strikes, len(SERIES)), np.nan)
     deflection = np.full((runs, nodes), np.nan)
     strains = np.full((2, runs, nodes, points), np.nan)
     contacts, events = np.zeros(runs, CONTACT), np.zeros(runs, EVENTS)
-    arrays = (responses, contacts, events, histories, deflection)
+    arrays = (responses, contacts, events, histories, series, deflection)
     models, schemes = cases["beam_model"], cases["scheme"]
     kinds = np.stack([models, schemes, is_extended(cases), mode_keys(cases)])
     starts = np.flatnonzero(np.diff(kinds, prepend=-1).any(axis=0))
@@ -74,6 +76,8 @@ def solve(
     columns = {name: responses[name].copy() for name in responses.dtype.names or ()}
     if samples:
         columns |= zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)
+    if strikes:
+        columns |= zip(BY_STRIKE, np.moveaxis(series, 2, 0), strict=True)
     if profiles:
         columns["plastic_strain"], columns["equivalent_plastic_strain"] = strains
         columns["deflection"] = deflection

@@ -52,6 +52,11 @@ FAILURES: dict[str, tuple[int, str]] = {
         outputs.ENERGY_OUT_OF_BALANCE,
         "energy is out of balance by more than 5 %: take more nodes or a smaller courant",
     ),
+    "earlier_strike_unfinished": (
+        outputs.EARLIER_STRIKE_UNFINISHED,
+        "in an earlier strike than the last, the duration ends before the sphere moves upwards and "
+        "away from the beam; every response is missing",
+    ),
     "stopped": (
         _STOPPED,
         "the 3-D model stopped before its time, or had no room for its contact (see the log); "
@@ -67,6 +72,7 @@ MARKS: dict[str, tuple[int, str]] = {
     )
 }
 """Further flags of `status`, by name: bits that leave every response as it is."""
+_WHOLE_RUN = "diverged energy_out_of_balance earlier_strike_unfinished stopped"
 STATUS_FLAGS = FAILURES | MARKS
 """All flags of `status`."""
 FAILED = sum(bit for bit, _ in FAILURES.values())
@@ -203,7 +209,36 @@ FIELDS = _table(
     )
 )
 """The same at times in between, by name."""
+_SERIES = (
+    ("m", "indentation left after all strikes so far"),
+    ("m", "deflection under the sphere of the beam at rest after the strike"),
+    ("N", "largest contact force of the strike"),
+    ("1", "coefficient of restitution of the strike"),
+    ("m s-1", "sphere's velocity away from the beam when the strike's last contact ends"),
+    ("J", "energy dissipated in the contact in all strikes so far"),
+    ("J", "energy dissipated in the fibres in all strikes so far"),
+)
+BY_STRIKE = _table(
+    *(
+        Variable(f"{name}_over_strikes", ("strike",), units, long_name)
+        for name, (units, long_name) in zip(outputs.SERIES, _SERIES, strict=True)
+    )
+)
+"""Answers of every strike, of runs with several, by name."""
+SHAKEDOWN = 1e-3
+"""Largest growth in a strike, over what strikes have left so far, that counts as none."""
+_SHAKEDOWN = _table(
+    Variable(
+        "shakedown_strike",
+        (),
+        "1",
+        "strike from which on dent and dissipation in the fibres do not grow",
+        comment=f"from it on, either grows by at most {SHAKEDOWN:.1%} of itself per strike; NaN: "
+        "the last strike still makes it grow by more",
+    )
+)
 COORDINATES = _table(
+    Variable("strike", ("strike",), "1", "number of the strike"),
     Variable("time", ("time",), "s", "time since first touch"),
     Variable("field_time", ("field_time",), "s", "time of the fields since first touch"),
     Variable("x", ("x",), "m", "distance from the left end"),
@@ -218,7 +253,8 @@ _OF_WINGS = _table(
         for name, units, long_name, comment in model.variables
     )
 )
-VARIABLES = RESPONSES | _OF_WINGS | HISTORIES | PROFILES | FIELDS | COORDINATES
+_AXES = HISTORIES | PROFILES | FIELDS | BY_STRIKE | COORDINATES
+VARIABLES = RESPONSES | _OF_WINGS | _SHAKEDOWN | _AXES
 """Every variable but those of bits (FLAGS) and the varied parameters (for these see PARAMETERS)."""
 
 
@@ -242,7 +278,7 @@ def attributes(name: str) -> dict[str, Any]:
     entry = VARIABLES[name] if name in VARIABLES else PARAMETERS[name]
     attrs: dict[str, Any] = {"units": entry.units, "long_name": entry.long_name}
     if isinstance(entry, Variable) and entry.missing:
-        attrs["missing_because"] = f"diverged energy_out_of_balance stopped {entry.missing}"
+        attrs["missing_because"] = f"{_WHOLE_RUN} {entry.missing}"
     if isinstance(entry, Variable) and entry.comment:
         attrs["comment"] = entry.comment
     return attrs
@@ -271,6 +307,7 @@ def status_bits(responses: Iterable[str]) -> int:
     Names that the table lacks, such as the output of a test function, add none.
     """
     bits = outputs.DIVERGED | outputs.ENERGY_OUT_OF_BALANCE | _STOPPED
+    bits |= outputs.EARLIER_STRIKE_UNFINISHED
     for name in responses:
         if name in RESPONSES and (reason := RESPONSES[name].missing):
             bits |= STATUS_FLAGS[reason][0]
@@ -290,7 +327,7 @@ def answer_variables(
     scalars = {name: (lead, answers[name]) for name in responses}
     fields = {
         name: ((*lead, *entry.dims), answers[name])
-        for name, entry in (HISTORIES | PROFILES | FIELDS).items()
+        for name, entry in (HISTORIES | PROFILES | FIELDS | BY_STRIKE).items()
         if name in answers
     }
     remarks = answers["remarks"].astype(np.int32)

@@ -214,6 +214,8 @@ def with_fields(run: xr.Dataset, frames: int) -> xr.Dataset:
     """
     if FIELDS.keys() <= run.keys():
         return run
+    if _has_several_strikes(run):
+        raise ValueError("animate: several strikes have no fields over time: take strikes: 1")
     if several := [dim for dim in run.dims if dim not in ("time", "x", "z")]:
         names = ", ".join(map(str, several))
         raise ValueError(f"animate: there are several runs, on {names}: select one of them")
@@ -229,11 +231,15 @@ def with_fields(run: xr.Dataset, frames: int) -> xr.Dataset:
     return solved
 
 
+def _has_several_strikes(run: xr.Dataset) -> bool:
+    return "strikes" in run.coords and bool((run["strikes"] > 1).any())
+
+
 def of_study(runs: xr.Dataset) -> Animation | None:
     """Return the animation of a study of one run that stores profiles; None of others."""
     if "deflection" not in runs or access.count(runs) != 1 or access.further_models(runs):
         return None
-    if not np.isfinite(runs["deflection"]).all():  # it diverged
+    if _has_several_strikes(runs) or not np.isfinite(runs["deflection"]).all():  # diverged
         return None
     return animation(with_fields(runs.squeeze(access.design_dims(runs)), _FRAMES))
 

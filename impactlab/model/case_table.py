@@ -12,6 +12,7 @@ from impactlab import wings
 from impactlab.model.bodies import Beam
 from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import case_fields
+from impactlab.model.cost import flies
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.parameters import (
@@ -34,6 +35,11 @@ from impactlab.solver import (
 )
 from impactlab.solver.types import CASE, PROFILE
 
+NO_REST = (
+    "must be 1 of a beam that its ends let fly, for it does not come to rest: change it, or hold "
+    "an end (support_left, support_right)"
+)
+"""Why such a beam cannot be struck again."""
 _ON_NODE = 1e-6
 """Distance (spacings) from a node at which a strike lies on it."""
 
@@ -81,6 +87,11 @@ def case_table(
             raise ValueError(
                 f"{run}{name} = {word!r}: beam_model = {model!r} has {only!r} alone{reason}"
             )
+    refused = (cases["strikes"] > 1) & flies(cases)
+    if refused.any():
+        row = int(refused.argmax())
+        run = f"run {first_run + row}: " if varied else ""
+        raise ValueError(f"{run}strikes = {cases[row].strikes}: {NO_REST}")
     between = cases["strike_position"] * (cases["nodes"] - 1)
     refused = abs(between - between.round()) > _ON_NODE
     if refused.any():

@@ -72,7 +72,8 @@ def node_steps(cases: Any) -> Any:
     stretches = cases["beam_model"] == BEAM_MODELS.index("von_karman")
     beside = bending / np.sqrt(1.0 + stretches * (bending / wave) ** 2)
     largest = np.where(modal, wave, np.where(bends | stretches, beside, 0.5 * wave))
-    return solved(cases) * cases["nodes"] * cases["duration"] / (cases["courant"] * largest)
+    run = solved(cases) * cases["nodes"] * cases["duration"] / (cases["courant"] * largest)
+    return run * cases["strikes"]
 
 
 _RATES = (1.0, 1.0, 1.5, 3.0, 4.0, 4.0)  # cost of a node per step over the paper's, by beam model
@@ -106,7 +107,7 @@ def work(cases: Any) -> Any:
     step = 2.0 / np.sqrt(stiffness * (1.0 / mass + np.where(lumped, 0.0, 1.0 / node)))
     contact = cases["duration"] / (cases["courant"] * step)
     nodes = solved(cases) * nodes
-    bending = node_steps(cases) / nodes
+    bending = node_steps(cases) / nodes / cases["strikes"]
     steps = 1.0 + np.where(lumped, _LUMPED * contact, np.hypot(bending, contact))
     leapfrog = steps * (nodes * np.take(_RATES, model) + _BESIDES)
     in_contact = _CONTACTS * 2.94 * indentation / cases["velocity"] / cases["duration"]
@@ -119,7 +120,8 @@ def work(cases: Any) -> Any:
     beyond = np.clip((stress / cases["beam_yield_stress"] - 1.0) / 3.0, 0.0, 1.0)
     share = np.where(model == BEAM_MODELS.index("elastic"), 0.0, beyond * beyond)
     modal = np.minimum(in_contact, 1.0) * touching + share * yielding
-    return np.where(cases["scheme"] == SCHEMES.index("modal"), steps * modal, leapfrog)
+    run = np.where(cases["scheme"] == SCHEMES.index("modal"), steps * modal, leapfrog)
+    return run * cases["strikes"]
 
 
 def contact_time(cases: Any) -> Any:

@@ -13,7 +13,7 @@ import numpy as np
 
 from impactlab import wings
 from impactlab.model.bodies import Beam, Sphere
-from impactlab.model.checks import instance, number, one_of, positive, require
+from impactlab.model.checks import instance, integer, number, one_of, positive, require
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI, Quantity, engineering
 from impactlab.solver import (
@@ -41,6 +41,10 @@ OTHER_BEAM = (
     "pinned, support_right: pinned and strike_position: 0.5"
 )
 """Ends of messages on what other beams cannot have."""
+SETTLING_MODELS = tuple(model for model in BEAM_MODELS if model != "von_karman")
+"""Models of the beam that can be put to rest between two strikes."""
+OTHER_MODEL = f"a model of the beam other than {', '.join(SETTLING_MODELS)}"
+"""End of the message on what other models cannot have."""
 OTHER_SECTION = "with a section that is no rectangle: change it, or set shape: rectangle"
 """The same, of other sections."""
 
@@ -82,6 +86,12 @@ class Impact:
         Place that the sphere strikes, as a share of the span from the left end; it must lie on a
         node of the discretisation, and on an end only where that is free. Others than mid-span need
         what other ends need.
+    strikes : int, default 1
+        Number of times that a sphere with this velocity strikes this place, the beam at rest again
+        before each (solver/settle.py): plastic strains and dent are carried over. Responses are
+        those of the last strike, but that dents, plastic strains and dissipated energies are what
+        all of them have left, and deflections count from the axis before the first. More than one
+        need ends that hold the beam, and none is for "solid".
 
     Raises
     ------
@@ -109,10 +119,15 @@ class Impact:
     contact_compliance: str = "half_space"
     contact_prestress: str = "ignored"
     strike_position: SI[float] = SI("1", MID_SPAN)
+    strikes: int = 1
 
     def __post_init__(self) -> None:
         instance("Impact", "sphere", self.sphere, Sphere)
         instance("Impact", "beam", self.beam, Beam)
+        strikes = integer("Impact", "strikes", self.strikes, 1)
+        object.__setattr__(self, "strikes", strikes)
+        alone = np.equal(strikes, 1) | np.isin(self.beam_model, SETTLING_MODELS)
+        require(alone, "Impact", "strikes", strikes, f"must be 1 with {OTHER_MODEL}")
         positive("Impact", "velocity", self.velocity)
         gravity = number("Impact", "gravity", self.gravity)
         require(gravity >= 0, "Impact", "gravity", gravity, "must not be negative")

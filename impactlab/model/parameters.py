@@ -74,6 +74,7 @@ _ROWS = (
         for field, units, text in _MATERIAL[:4]  # a sphere does not harden, nor by rate
     ),
     ("strike_position", "1", "place of the strike over the span", "impact.strike_position"),
+    ("strikes", "1", "number of strikes on that place", "impact.strikes"),
     ("support_left", "1", "left support of the beam", "impact.beam.support_left"),
     ("support_right", "1", "right support of the beam", "impact.beam.support_right"),
     *(
@@ -123,7 +124,7 @@ _CHOICES = {
     "rule": RULES,
     "scheme": SCHEMES,
 }
-_WHOLE = ("nodes", "points")
+_WHOLE = ("strikes", "nodes", "points")
 SECTION = ("beam_shape", "beam_profile", *(f"beam_{field}" for field in THICKNESSES))
 """Parameters of the section beside width and depth."""
 PROFILE_FIXED = "is the same in all runs: vary beam_width and beam_depth, which scale it"

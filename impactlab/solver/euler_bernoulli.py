@@ -28,6 +28,7 @@ from impactlab.solver.fibre_plasticity import (
 )
 from impactlab.solver.jit import allocating, compiled, inlined
 from impactlab.solver.section import FibreSection
+from impactlab.solver.settle import settle
 from impactlab.solver.state import BeamModel, State
 from impactlab.solver.types import Array, Record
 
@@ -97,4 +98,9 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
     return ahead, -work
 
 
-MODEL = BeamModel(_make, _step, _curvature, _energy, deflected, _spread)
+@compiled
+def _settle(state: State) -> None:
+    settle(state.beam, state.plastic, state.section, state.grid)
+
+
+MODEL = BeamModel(_make, _step, _curvature, _energy, deflected, _spread, settle=_settle)

@@ -17,7 +17,7 @@ from impactlab.solver.types import Record, record
 EVENTS = record(
     """
     delta delta_before t_peak w w_before w_max F F_before contacts touching t_touch t_first_end
-    time_in_contact v_exit v_s v_mid impulse energy_error
+    time_in_contact v_exit v_s v_mid impulse energy_error before reloaded F_reloaded
     """
 )
 """At the last two steps: indentation delta, delta_before (m), mid-span deflection w, w_before
@@ -26,17 +26,42 @@ force, which is that of the largest indentation but for these; w_max (m). contac
 touching: 1 or 0; t_touch: when this contact began, t_first_end: when the first one ended (NaN: not
 yet), pauses shorter than SHORT_PAUSE of it left out, time_in_contact of the ended ones (s); v_exit
 (m/s): the sphere's velocity when the last contact ended; v_s, v_mid (m/s): of sphere and mid-span
-at the last audit. impulse (N s). energy_error: largest imbalance over the initial energy."""
+at the last audit. impulse (N s). energy_error: largest imbalance over the initial energy, of all
+strikes. Of a further strike, before: how far the contact was loaded by those before it (m; -1 in
+the first); reloaded (m), F_reloaded (N): the largest approach, and the force at it, on the curve on
+which it reloads."""
 
 
 @compiled
-def start(events: Record) -> None:
-    """Set the first touch: the sphere rests on the beam at t = 0."""
+def start(events: Record, contact: Record, strike: int) -> None:
+    """Set the first touch of a strike: the sphere rests on the beam at t = 0."""
+    if strike > 0:
+        again(events, contact)
+    else:
+        events.before, contact.n = -1.0, 1.5
     events.contacts = 1.0
     events.touching = 1.0
     events.t_first_end = np.nan
     events.v_exit = np.nan
     events.t_peak = np.nan
+
+
+@compiled
+def again(events: Record, contact: Record) -> None:
+    """Forget what happened in the strikes before, but for the energy and the contact's memory."""
+    events.delta = events.delta_before = events.reloaded = contact.delta_r
+    events.before, events.F_reloaded = contact.approach_m, 0.0
+    events.F = events.F_before = contact.damping = 0.0
+    events.t_touch = events.time_in_contact = events.impulse = 0.0
+    contact.peak_force, contact.largest = 0.0, 0.0
+
+
+@compiled
+def largest_load(events: Record, contact: Record) -> tuple[float, float]:
+    """Return the largest force (N) and approach (m) of a strike, of laws that need no tracking."""
+    if contact.approach_m > events.before:
+        return contact.F_m, contact.approach_m
+    return events.F_reloaded, events.reloaded
 
 
 @compiled
@@ -69,6 +94,11 @@ def between_steps(
             largest = contact.peak_force
             load_to(contact, pair, peak)
             if not tracked or (pair.rate.D > 0.0 and contact.peak_force > largest):
+                events.t_peak = t + (offset - 1.0) * dt
+        elif falls and events.before >= 0.0 and events.delta > events.reloaded:
+            offset, events.reloaded = vertex(events.delta_before, events.delta, delta)
+            events.F_reloaded = force(contact, pair, events.reloaded)
+            if not tracked:
                 events.t_peak = t + (offset - 1.0) * dt
         F = force(contact, pair, delta)
         if damped and is_damped(pair.law):

@@ -112,11 +112,18 @@ def make_leaps(n: int, sections: int) -> Leaps:
 
 @compiled
 def rest_leaps(leaps: Leaps) -> None:
-    """Forget all leaps."""
+    """Forget all leaps, and their tables."""
+    leaps.memory[_TABLES] = -1
+    land(leaps, 0.0)
+
+
+@compiled
+def land(leaps: Leaps, w: float) -> None:
+    """Forget all leaps; the beam is at rest, mid-span at w (m)."""
     memory = leaps.memory
     memory[FRESH] = memory[WAIT] = memory[PATIENCE] = memory[BENT] = 0
-    memory[LEVEL], memory[_TABLES] = LEAST, -1
-    leaps.top[_SEEN] = leaps.top[_FOUND] = 0.0
+    memory[LEVEL] = LEAST
+    leaps.top[_SEEN] = leaps.top[_FOUND] = w
     for k in range(_ROOM):
         leaps.levels[k] = -1
 

@@ -12,6 +12,7 @@ import numpy as np
 from impactlab.solver import (
     BEAM_MODELS,
     euler_bernoulli,
+    kink,
     lumped,
     modal,
     responses,
@@ -30,7 +31,11 @@ from impactlab.solver.fibre_plasticity import (
 )
 from impactlab.solver.jit import allocating, compiled, inlined
 from impactlab.solver.leapfrog import time_loop
-from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE
+from impactlab.solver.outputs import (
+    DIVERGED,
+    EARLIER_STRIKE_UNFINISHED,
+    ENERGY_OUT_OF_BALANCE,
+)
 from impactlab.solver.section import FibreSection, Room, cut_section, make_room, with_rate
 from impactlab.solver.stability import discretise, grid_of, struck_node
 from impactlab.solver.state import BeamModel, State
@@ -77,9 +82,35 @@ def _keep_profiles(
             peeq[r, i, j] = state.plastic.peeq[node, j]
 
 
+def _rest(model: BeamModel) -> Callable[..., int]:
+    """Return a function that puts the beam to rest after a strike."""
+    settle, lift = model.settle, model.lift
+
+    @compiled
+    def rest(
+        case: Record, contact: Record, events: Record, series: Array, state: State, strike: int
+    ) -> int:
+        """Fill in the row of outputs.SERIES, if any; return which row of beam.w is the last."""
+        if settle is not None:
+            settle(state)
+        events.v_mid = 0.0
+        pair, section, grid, beam, plastic = state[:5]
+        dent, w = contact.delta_r, beam.w[0, grid.mid] - kink.height(grid, contact.kink)
+        if lift is not None:
+            dent += lift(state, contact, 0.0)
+        if strike < series.shape[0]:
+            _, yielded = plastic_energy(plastic, section, grid)
+            responses.read_strike(series[strike], dent, w, yielded, case, events, contact, pair)
+        if strike == case.strikes - 1:
+            kink.straighten(beam.w, grid, contact.kink)
+        return int(np.int64(0))
+
+    return rest
+
+
 def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
     """Return a function that solves a case; extended: see _kernel."""
-    march, lift = time_loop(model, extended), model.lift
+    march, rest, lift = time_loop(model, extended), _rest(model), model.lift
     largest_deflection = None if model.flight is None else model.flight.largest
 
     @inlined
@@ -89,16 +120,24 @@ def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
         contact: Record,
         events: Record,
         samples: Array,
+        series: Array,
         state: State,
         steps: int,
     ) -> int:
         """Solve a case from rest, and fill in its answer; see march for what is returned."""
-        now = march(case, state, contact, events, samples, steps)
-        if largest_deflection is not None:
-            events.w_max = largest_deflection(state, events.w_max)
-        if now < 0:
-            answer.status = DIVERGED
-            return now
+        now = int(np.int64(0))
+        for strike in range(case.strikes):
+            if strike > 0 and not responses.sphere_leaves(events):
+                answer.status = EARLIER_STRIKE_UNFINISHED
+                return now
+            now = march(case, state, contact, events, samples, steps, strike)
+            if largest_deflection is not None:
+                events.w_max = largest_deflection(state, events.w_max)
+            if now < 0:
+                answer.status = DIVERGED
+                return now
+            if case.strikes > 1:
+                now = rest(case, contact, events, series, state, strike)
         answer.energy_error = events.energy_error
         if answer.energy_error > WORST_ENERGY_ERROR:
             answer.status = ENERGY_OUT_OF_BALANCE
@@ -127,10 +166,11 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     empty. answers: blank RESPONSE records, filled. contacts, events:
     zeros, CONTACT and EVENTS records to work in. samples: shape (R, 5, S), filled with force,
     mid-span deflection, mid-span curvature, sphere displacement and indentation at S equal
-    intervals from 0 to the duration; S = 0 for none. deflection (R, nodes), plastic_strain and peeq
-    (R, nodes, P // 2): filled with the beam's final state; length 0 for none. A model whose
-    sections have P fibres, outermost below first, fills (R, nodes, P). A run that diverges
-    leaves NaN and its status.
+    intervals from 0 to the duration, of the last strike; S = 0 for none. series: shape (R, n,
+    len(SERIES)), filled with outputs.SERIES of each of n strikes; n = 0 for none. deflection
+    (R, nodes), plastic_strain and peeq (R, nodes, P // 2): filled with the beam's final state, at
+    rest after several strikes; length 0 for none. A model whose sections have P fibres, outermost
+    below first, fills (R, nodes, P). A run that diverges leaves NaN and its status.
 
     A record does not keep its array alive in compiled code, so kernels make no arrays of records:
     those of all runs are the caller's, who holds them until this returns.
@@ -150,6 +190,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
         contacts: Array,
         events: Array,
         samples: Array,
+        series: Array,
         deflection: Array,
         plastic_strain: Array,
         peeq: Array,
@@ -176,7 +217,9 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
                 else:
                     extra = make(case, section, grid)
                 state = State(pair, section, grid, beam, plastic, extra)
-                now = run(case, answers[r], contacts[r], events[r], samples[r], state, steps)
+                now = run(
+                    case, answers[r], contacts[r], events[r], samples[r], series[r], state, steps
+                )
                 if now < 0:
                     samples[r] = np.nan
                     continue

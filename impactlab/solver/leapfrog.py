@@ -87,6 +87,28 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
     return fly
 
 
+def _at_touch(model: BeamModel) -> Callable[..., tuple[float, float]]:
+    """Return a function for where a sphere touches a beam at rest."""
+    beam_energy, mid_curvature, sag = model.energy, model.curvature, model.sag
+    fast = model.flight is not None
+
+    @compiled
+    def at_touch(case: Record, state: State, contact: Record) -> tuple[float, float]:
+        """Return the sphere's displacement (m), and the whole energy (J) but for its velocity's."""
+        pair, section, grid, beam, plastic = state[:5]
+        w_s = beam.w[0, grid.mid] - kink.height(grid, contact.kink) + contact.delta_r
+        if pair.bending != 0.0:
+            elastic = plastic.M_0[grid.mid] / section.stiffness - mid_curvature(state, 0)
+            w_s += pair.bending * elastic
+        if sag is not None:
+            w_s += sag(state)
+        stored, lost = contact_history.energies(contact, pair, contact.delta_r, fast)
+        in_beam = beam_energy(state, 0, 0.0, 0.0)
+        return w_s, in_beam + stored + lost - case.sphere_mass * case.gravity * w_s
+
+    return at_touch
+
+
 def _audit(model: BeamModel) -> Callable[..., float]:
     """Return the audit of the energy of a model of the beam."""
     beam_energy, fast = model.energy, model.flight is not None
@@ -101,19 +123,20 @@ def _audit(model: BeamModel) -> Callable[..., float]:
         F: float,
         u_mid: float,
         excess: float,
+        at_touch: float,
     ) -> float:
         """Return the energy missing or in excess, over the initial kinetic energy.
 
         After a step, of its beginning. sphere: its displacement (m), velocity before and after the
         step (m/s), approach (m). u_mid (m): u at mid-span before the step. excess (J): see
-        BeamModel.spread.
+        BeamModel.spread. at_touch (J): the energy at the strike's beginning, without the sphere's.
         """
         w_s, v_before, v_after, approach = sphere
         start = 0.5 * case.sphere_mass * case.velocity**2
         falling = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
         in_beam = beam_energy(state, now, F, u_mid) + excess
         kept, lost = contact_history.energies(contact, state.pair, approach, fast)
-        return abs(falling + in_beam + kept + lost - start) / start
+        return abs(falling + in_beam + kept + lost - (start + at_touch)) / start
 
     return imbalance
 
@@ -178,27 +201,37 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
     move_beam, mid_curvature, spread = model.step, model.curvature, model.spread
     flight_stride, fly = model.flight_stride, None if model.flight is None else _leaps(model.flight)
     touch, imbalance = _contact(model, extended), _audit(model)
+    at_touch = _at_touch(model)
 
     @inlined
     def march(
-        case: Record, state: State, contact: Record, events: Record, samples: Array, steps: int
+        case: Record,
+        state: State,
+        contact: Record,
+        events: Record,
+        samples: Array,
+        steps: int,
+        strike: int,
     ) -> int:
         """March from first touch to the end; return which row of beam.w is the last, or -1.
 
-        -1: it diverged. contact and events are kept up to date.
+        -1: it diverged. contact and events are kept up to date. strike: how many came before.
         """
         pair, section, grid, beam, plastic = state[:5]
         w, u, dt, mid = beam.w, beam.u, grid.dt, grid.mid
         stride = min(max(_LEAST_STRIDE, steps // _AUDITS), _LARGEST_STRIDE)
         # half a step before the first touch
         w_s, v_s, per_mass = 0.0, case.velocity - 0.5 * dt * case.gravity, 1.0 / case.sphere_mass
+        rest = 0.0
+        if strike > 0:
+            w_s, rest = at_touch(case, state, contact)
+            events.w = events.w_before = events.w_max = w[0, mid] - kink.height(grid, contact.kink)
         # a plain 0 would be a type of its own, and its callees compiled twice
         now = step = int(np.int64(0))
         to_audit = stride
         here = (0.0, 0.0, 0.0, 0.0, 0.0)
         ahead = 0.0  # the mean under the pressure, of mid-span
-        contact.n = 1.5
-        event_tracker.start(events)
+        event_tracker.start(events, contact, strike)
         while step <= steps:
             t, u_mid = step * dt, u[mid]
             w_mid = w[now, mid] - kink.height(grid, contact.kink)
@@ -233,7 +266,7 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
                 catch_up(plastic, section)
                 events.v_s, events.v_mid = v_s, u_mid / dt
                 sphere = (w_s, v_s, v_after, approach)
-                error = imbalance(case, state, contact, now, sphere, F, u_mid, excess)
+                error = imbalance(case, state, contact, now, sphere, F, u_mid, excess, rest)
                 events.energy_error = max(events.energy_error, error)
                 if not error < 1.0:
                     return -1

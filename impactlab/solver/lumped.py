@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver.beam import BeamGrid, mirror
+from impactlab.solver.beam import BeamGrid, mirror, rest_beam
 from impactlab.solver.euler_bernoulli import MODEL as EULER_BERNOULLI
 from impactlab.solver.euler_bernoulli import deflected
 from impactlab.solver.jit import allocating, compiled, inlined
@@ -86,4 +86,11 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
     return 0.0, 0.0
 
 
-MODEL = BeamModel(_make, _step, EULER_BERNOULLI.curvature, _energy, deflected, _spread)
+@compiled
+def _settle(state: State) -> None:
+    rest_beam(state.beam)
+
+
+MODEL = BeamModel(
+    _make, _step, EULER_BERNOULLI.curvature, _energy, deflected, _spread, settle=_settle
+)

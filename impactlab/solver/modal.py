@@ -46,6 +46,7 @@ from impactlab.solver.flight import (
     WAIT,
     bound_swing,
     exchange,
+    land,
     largest_deflection,
     leap_modes,
     lowest,
@@ -63,10 +64,12 @@ from impactlab.solver.modes import (
     mode_curvature,
     move_modes,
     rest_modes,
+    settle_modes,
     span,
     take_modes,
 )
 from impactlab.solver.section import FibreSection, bend
+from impactlab.solver.settle import ROUNDS, yields_at_rest
 from impactlab.solver.state import BeamModel, Flight, State
 from impactlab.solver.strain_rate import RateLaw
 from impactlab.solver.types import Record
@@ -320,6 +323,27 @@ def _retrace(state: State) -> tuple[float, float]:
     return w, mode_curvature(q, state.extra.bent, state.grid.mid)
 
 
+@compiled
+def _settle(state: State) -> None:
+    section, grid, beam, plastic, modes = state[1:]
+    w, outside, rounds = 0.0, True, 0
+    while outside and rounds < ROUNDS:
+        w, outside, rounds = settle_modes(modes), False, rounds + 1
+        for i in range(2, grid.last + 1):
+            kappa = mode_curvature(modes.q, modes.bent, i)
+            plastic.flowed[i, 0] = kappa
+            if yields_at_rest(plastic, section, i, kappa):
+                M_0, plastic.kappa_min[i], plastic.kappa_max[i] = bend(
+                    section, kappa, plastic.plastic_strain, plastic.peeq, i
+                )
+                length = copies(grid, i) * grid.dx
+                add_moment(modes.source, modes.bent, i, length * (M_0 - plastic.M_0[i]))
+                plastic.M_0[i], outside = M_0, True
+    beam.w[0, grid.mid] = beam.w[1, grid.mid] = w
+    beam.u[grid.mid] = 0.0
+    land(modes.leaps, w)
+
+
 @inlined
 def _largest(state: State, w_max: float) -> float:
     return largest_deflection(state.extra.leaps, state.extra.D, w_max)
@@ -336,4 +360,5 @@ MODEL = BeamModel(
     flight=Flight(_leap, _retrace, _largest),
     renew=_renew,
     take=take_modes,
+    settle=_settle,
 )

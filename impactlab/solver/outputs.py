@@ -22,6 +22,7 @@ DEFLECTION_STILL_GROWING = 16
 INDENTATION_STILL_GROWING = 32
 ENERGY_OUT_OF_BALANCE = 64
 OUTSIDE_CONTACT_LAW = 128
+EARLIER_STRIKE_UNFINISHED = 512  # 256: of the 3-D model (impactlab.variables)
 
 # The bits of `remarks`: warnings on answers that are there (impactlab.variables.WARNINGS).
 CONTACT_CREATED_ENERGY = 1
@@ -130,6 +131,17 @@ RESPONSES = (
     Response("energy_error", "1", "largest energy imbalance over the initial kinetic energy"),
 )
 """Every response, in the order of datasets and reports."""
+
+SERIES = (
+    "permanent_indentation",
+    "residual_deflection",
+    "peak_force",
+    "restitution",
+    "rebound_velocity",
+    "contact_dissipation",
+    "plastic_dissipation",
+)
+"""What a run keeps of each strike."""
 
 RESPONSE = np.dtype(
     (

@@ -26,6 +26,7 @@ from impactlab.solver.contact.history import Pair, energies, yield_stress
 from impactlab.solver.contact.metals import LARGEST_RATIO, LARGEST_REVERSAL, LEAST_RATIO
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import is_damped, limit, radius
+from impactlab.solver.event_tracker import largest_load
 from impactlab.solver.jit import compiled
 from impactlab.solver.outputs import (
     CONTACT_CIRCLE_OUTSIDE_DATA,
@@ -70,14 +71,16 @@ def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) ->
         or -pair.compliance * contact.n * contact.F_m > recovers
     ):
         answer.status |= OUTSIDE_CONTACT_LAW
-    if events.delta == contact.approach_m:
+    further = events.before >= 0.0
+    if events.delta == contact.approach_m or (further and np.isnan(events.t_peak)):
         answer.status |= INDENTATION_STILL_GROWING
     else:
         tracked = pair.prestress[0] > 0.0 or is_damped(pair.law) or pair.rate.D > 0.0
-        answer.peak_force = contact.peak_force if tracked else contact.F_m
+        largest, approach = largest_load(events, contact)
+        answer.peak_force = contact.peak_force if tracked else largest
         answer.time_of_peak_force = events.t_peak
         bends = pair.bending != 0.0
-        answer.maximum_indentation = contact.largest if bends else contact.approach_m
+        answer.maximum_indentation = contact.largest if bends else approach
     answer.number_of_contacts = events.contacts
     answer.contact_duration = events.t_first_end
     if np.isnan(events.t_first_end):
@@ -163,9 +166,41 @@ def stretching(case: Record, w: float) -> float:
 
 
 @compiled
+def sphere_leaves(events: Record) -> bool:
+    """Return whether the sphere moves upwards and away from the beam."""
+    return not (events.touching == 1.0 or events.v_s >= 0.0 or events.v_s >= events.v_mid)
+
+
+@compiled
+def read_strike(
+    row: Array,
+    dent: float,
+    w: float,
+    yielded: float,
+    case: Record,
+    events: Record,
+    contact: Record,
+    pair: Pair,
+) -> None:
+    """Fill in outputs.SERIES of a strike, if the sphere has left.
+
+    dent, w: of the beam at rest (m). yielded: what its fibres have dissipated (J).
+    """
+    if not sphere_leaves(events):
+        return
+    tracked = pair.prestress[0] > 0.0 or is_damped(pair.law) or pair.rate.D > 0.0
+    largest, _ = largest_load(events, contact)
+    row[0], row[1] = dent, w
+    row[2] = contact.peak_force if tracked else largest
+    row[3], row[4] = -events.v_exit / case.velocity, -events.v_exit
+    _, row[5] = energies(contact, pair, events.delta)
+    row[6] = yielded
+
+
+@compiled
 def read_rebound(answer: Record, case: Record, events: Record) -> None:
     """Fill in the rebound, once the sphere moves upwards and away from the beam."""
-    if events.touching == 1.0 or events.v_s >= 0.0 or events.v_s >= events.v_mid:
+    if not sphere_leaves(events):
         answer.status |= SPHERE_NOT_LEAVING
     else:
         answer.rebound_velocity = -events.v_exit

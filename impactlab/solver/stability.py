@@ -109,6 +109,7 @@ def _extremes(case: Record, pair: Pair, growth: float) -> tuple[float, float]:
     energy = 0.5 * case.sphere_mass * case.velocity**2
     hertz = 4.0 / 3.0 * pair.E * math.sqrt(pair.R)
     delta = 0.1 * (2.5 * energy / hertz) ** 0.4
+    energy *= case.strikes  # where a strike ends, loading goes on in the next
     work, panels = 0.0, 1 if case.scheme == MODAL else PANELS
     k_c, F = _stiffness(pair, delta)
     hard = _hardened(case, pair)

@@ -56,7 +56,8 @@ class BeamModel(NamedTuple):
     far the contact lifts it, m. moments(state, now): at mid-span, along the beam and across its
     width, both times the width, N m. bend_back(state, now, contact, growth): let the
     kink of kink.py grow by so much, rad. section: functions that make room for a section and cut
-    it; None: those of section.py for half of the fibres.
+    it; None: those of section.py for half of the fibres. settle(state): put it to rest, as its
+    plastic strains leave it (settle.py); None: it cannot be struck twice.
     """
 
     make: Callable[..., Any]
@@ -75,3 +76,4 @@ class BeamModel(NamedTuple):
     moments: Callable[..., tuple[float, float]] | None = None
     bend_back: Callable[..., None] | None = None
     section: tuple[Callable[..., Any], Callable[..., Any]] | None = None
+    settle: Callable[..., None] | None = None

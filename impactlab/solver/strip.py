@@ -48,9 +48,13 @@ from impactlab.solver.fibre_plasticity import curvature, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
 from impactlab.solver.kink import bend_back
 from impactlab.solver.section import FibreSection
+from impactlab.solver.settle import ROUNDS, end_tangents, yield_on
 from impactlab.solver.state import State
 from impactlab.solver.timoshenko import Shear
 from impactlab.solver.types import ONE, Array, Record
+
+_AT_REST = 1e-13
+"""Share by which the bending across the width still changes at rest."""
 
 
 class Strip(NamedTuple):
@@ -172,6 +176,56 @@ def _width_energy(strip: Strip, grid: BeamGrid) -> float:
 
 
 @compiled
+def _rest_across(strip: Strip, per_dx: float, grid: BeamGrid) -> float:
+    """Put s to rest at the beam's curvatures; return by how much of itself `bent` changes.
+
+    T s_xx - D_s s = D_s nu kappa, by elimination from the left end on.
+    """
+    s, above, right, psi = strip.s, strip.rate, strip.d_rate, strip.shear.psi
+    T, D = strip.twist * per_dx * per_dx, strip.stiffness
+    above[1] = right[1] = s[grid.last + 1] = 0.0
+    for i in range(2, grid.last + 1):
+        low = 2.0 * T if grid.right == SYMMETRIC and i == grid.last else T
+        if (grid.left == CLAMPED and i == 2) or (grid.right == CLAMPED and i == grid.last):
+            above[i] = right[i] = 0.0
+            continue
+        pivot = -2.0 * T - D - low * above[i - 1]
+        above[i] = T / pivot if i < grid.last else 0.0
+        kappa = (psi[i] - psi[i - 1]) * per_dx
+        right[i] = (D * strip.nu * kappa - low * right[i - 1]) / pivot
+    change = largest = 0.0
+    for i in range(grid.last, 1, -1):
+        s[i] = right[i] - above[i] * s[i + 1]
+        bent = s[i] + strip.nu * (psi[i] - psi[i - 1]) * per_dx
+        change, largest = max(change, abs(bent - strip.bent[i])), max(largest, abs(bent))
+        strip.bent[i] = bent
+    for i in range(s.size):
+        strip.rate[i] = strip.d_rate[i] = 0.0
+    _mirror(s, strip.rate, grid)
+    return change / largest if largest > 0.0 else 0.0
+
+
+@compiled
+def _settle(state: State) -> None:
+    """Put beam and width to rest by turns: each changes the other's part by a tenth."""
+    _, section, grid, beam, plastic, strip = state
+    shear, per_dx = strip.shear, 1.0 / grid.dx
+    end_tangents(beam, plastic, section, grid)
+    for i in range(strip.bent.size):
+        strip.bent[i] = 0.0
+    for _ in range(ROUNDS):
+        for i in range(2, grid.last + 1):
+            shear.M[i] = plastic.M_0[i] - strip.nu * strip.stiffness * strip.bent[i]
+        timoshenko.rest(section, grid, beam, plastic, shear, shear.M)
+        change = 0.0
+        if strip.inertia > 0.0:
+            change = _rest_across(strip, per_dx, grid)
+            _push_back(strip, -1.0, grid.last)
+        if change <= _AT_REST and not yield_on(beam, shear.psi, plastic, section, grid):
+            break
+
+
+@compiled
 def _curvature(state: State, now: int) -> float:
     psi, grid = state.extra.shear.psi, state.grid
     return curvature(state.beam.w, now, psi, grid, np.uint64(grid.mid))
@@ -239,4 +293,5 @@ MODEL = timoshenko.MODEL._replace(
     lift=_lift,
     moments=_moments,
     bend_back=_bend_back,
+    settle=_settle,
 )

@@ -32,6 +32,7 @@ from impactlab.solver.fibre_plasticity import (
 )
 from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
 from impactlab.solver.section import FibreSection
+from impactlab.solver.settle import ROUNDS, end_tangents, rest_nodes, static_shape, yield_on
 from impactlab.solver.state import BeamModel, State
 from impactlab.solver.types import ONE, Array, Record
 
@@ -216,4 +217,33 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
     return ahead, 0.0
 
 
-MODEL = BeamModel(make, _step, _curvature, _energy, deflected, _spread)
+@inlined
+def rest(
+    section: FibreSection,
+    grid: BeamGrid,
+    beam: BeamState,
+    plastic: PlasticState,
+    shear: Shear,
+    M_0: Array,
+) -> None:
+    """Let nothing move, in the static shape under the moments M_0 (N m)."""
+    Q = static_shape(beam.w[0], shear.psi, M_0, section.stiffness, 1.0 / shear.stiffness, grid)
+    for i in range(shear.Q.size):
+        shear.Q[i], shear.spin[i], shear.d_spin[i] = Q, 0.0, 0.0
+    rest_nodes(beam, grid)
+    mirror_rotation(shear.psi, grid)
+    _moments(shear, plastic, section.stiffness, 1.0 / grid.dx, grid.last)
+
+
+@compiled
+def _settle(state: State) -> None:
+    _, section, grid, beam, plastic, shear = state
+    end_tangents(beam, plastic, section, grid)
+    for _ in range(ROUNDS):
+        rest(section, grid, beam, plastic, shear, plastic.M_0)
+        if not yield_on(beam, shear.psi, plastic, section, grid):
+            break
+    _moments(shear, plastic, section.stiffness, 1.0 / grid.dx, grid.last)
+
+
+MODEL = BeamModel(make, _step, _curvature, _energy, deflected, _spread, settle=_settle)

@@ -58,7 +58,7 @@ CASE = record(
     width_stiffness width_inertia width_lever width_twist axis_compliance axis_bending
     """,
     integers="contact beam_model load contact_prestress support_left support_right"
-    " axis_held_left axis_held_right beam_shape nodes points rule scheme",
+    " axis_held_left axis_held_right beam_shape nodes points rule scheme strikes",
 )
 CASE = np.dtype((np.record, [*CASE.descr, ("beam_profile", float, (PROFILE, 2))]))
 """Record type of the case table: one record per run, everything the kernels need to know of it.

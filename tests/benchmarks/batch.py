@@ -26,7 +26,7 @@ from impactlab.model.section import fibre_table
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.kernels import kernel_of
-from impactlab.solver.outputs import blank
+from impactlab.solver.outputs import SERIES, blank
 from impactlab.study.execute import solve_batch
 from impactlab.study.solvers import kernels as impacts
 from impactlab.study.store import OutputSpec, run_keys
@@ -60,11 +60,11 @@ def kernels(duration: float) -> Callable[[], object]:
     cases = case_table(IMPACT, GRID, duration=duration, varied=VARIED)
     answers = blank(RUNS)
     nothing = np.zeros((RUNS, 0)), np.zeros((RUNS, 0, 0)), np.zeros((RUNS, 0, 0))
-    samples = np.zeros((RUNS, 5, 0))
+    samples = np.zeros((RUNS, 5, 0)), np.zeros((RUNS, 0, len(SERIES)))
     records = np.zeros(RUNS, CONTACT), np.zeros(RUNS, EVENTS)
     kernel = kernel_of(cases[0].beam_model, cases[0].scheme)
     tables = fibre_table(cases), np.empty((0, 0))
-    return lambda: kernel(cases, *tables, answers, *records, samples, *nothing)
+    return lambda: kernel(cases, *tables, answers, *records, *samples, *nothing)
 
 
 def library(duration: float) -> Callable[[], object]:
