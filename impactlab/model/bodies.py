@@ -13,7 +13,7 @@ from impactlab.model.cross_section import Section
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI
 from impactlab.model.section import SHAPES, check_section, section_fields
-from impactlab.solver import SUPPORTS
+from impactlab.solver import RESISTANCES, SUPPORTS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,14 +102,21 @@ class Beam:
         Shear force over the deflection at an elastic end, in N/m.
     rotational_stiffness_left, rotational_stiffness_right : Quantity, default 0
         Moment over the slope at an elastic end, in N m (per rad).
+    mass_damping : Quantity, default 0
+        Damping force over mass and velocity, Rayleigh's alpha, in 1/s.
+    stiffness_damping : Quantity, default 0
+        Damping force over that of elastic bending, per rate, Rayleigh's beta, in s.
+    damping_ratio : Quantity, default 0
+        Damping of each mode over its critical one, of 1; with the scheme "modal" alone. Damping
+        needs the beam models "euler_bernoulli" or "elastic" (solver/resistance.py).
 
     Raises
     ------
     ValueError
         If a length is not finite and positive, the depth not below the span, the shear coefficient
-        not in (0, 1], shape or a support unknown, a stiffness negative, an elastic support without
-        any, or the material is not a `Material`; if a shape lacks a thickness, cannot have it, or
-        is round and not as wide as deep.
+        not in (0, 1], shape or a support unknown, a stiffness or a damping negative, an elastic
+        support without any, or the material is not a `Material`; if a shape lacks a thickness,
+        cannot have it, or is round and not as wide as deep.
 
     Examples
     --------
@@ -134,6 +141,9 @@ class Beam:
     stiffness_right: SI[float] = SI("N m-1", 0.0)
     rotational_stiffness_left: SI[float] = SI("N m", 0.0)
     rotational_stiffness_right: SI[float] = SI("N m", 0.0)
+    mass_damping: SI[float] = SI("s-1", 0.0)
+    stiffness_damping: SI[float] = SI("s", 0.0)
+    damping_ratio: SI[float] = SI("1", 0.0)
 
     def __post_init__(self) -> None:
         instance("Beam", "material", self.material, Material)
@@ -148,6 +158,9 @@ class Beam:
         check_section(self)
         for side in ("left", "right"):
             _check_end(self, side)
+        for field in RESISTANCES:
+            resistance = number("Beam", field, getattr(self, field))
+            require(resistance >= 0, "Beam", field, resistance, "must not be negative")
 
     @property
     def section(self) -> Section:

@@ -32,6 +32,10 @@ from impactlab.solver import (
 )
 from impactlab.solver.types import CASE, PROFILE
 
+MODAL_DAMPING = (
+    "is of modes: set scheme: modal, or state mass_damping and stiffness_damping instead"
+)
+"""End of the message that refuses it in leapfrog."""
 _ON_NODE = 1e-6
 """Distance (spacings) from a node at which a strike lies on it."""
 
@@ -79,6 +83,11 @@ def case_table(
             raise ValueError(
                 f"{run}{name} = {word!r}: beam_model = {model!r} has {only!r} alone{reason}"
             )
+    refused = (cases["damping_ratio"] > 0.0) & (cases["scheme"] != SCHEMES.index("modal"))
+    if refused.any():
+        row = int(refused.argmax())
+        run = f"run {first_run + row}: " if varied else ""
+        raise ValueError(f"{run}damping_ratio = {cases['damping_ratio'][row]:g}: {MODAL_DAMPING}")
     between = cases["strike_position"] * (cases["nodes"] - 1)
     refused = abs(between - between.round()) > _ON_NODE
     if refused.any():

@@ -22,6 +22,7 @@ from impactlab.solver import (
     COMPLIANCES,
     LOADS,
     PRESTRESSES,
+    RESISTANCES,
     WAVE_MODELS,
 )
 from impactlab.solver.contact import LAWS
@@ -34,6 +35,11 @@ MOVING_SUPPORTS = ("free", "elastic")
 """Supports whose end can be struck."""
 SPRUNG_BEAM = f"{' or '.join(BENDING_MODELS)} with elastic ends: change it, or set other supports"
 """End of messages on what elastic ends cannot have."""
+RESISTED_BEAM = (
+    f"{' or '.join(BENDING_MODELS)} with {', '.join(RESISTANCES[:-1])} or {RESISTANCES[-1]}: "
+    "change it, or set these to 0"
+)
+"""The same, of what resists the motion."""
 OTHER_BEAM = (
     "with ends that are not pinned, or a strike beside mid-span: change it, or set support_left: "
     "pinned, support_right: pinned and strike_position: 0.5"
@@ -135,6 +141,9 @@ class Impact:
         sprung = np.equal(beam.support_left, "elastic") | np.equal(beam.support_right, "elastic")
         sound = np.isin(self.beam_model, BENDING_MODELS) | ~sprung
         require(sound, "Impact", "beam_model", self.beam_model, f"must be {SPRUNG_BEAM}")
+        resisted = sum(np.greater(getattr(beam, field), 0.0) for field in RESISTANCES)
+        sound = np.isin(self.beam_model, BENDING_MODELS) | np.equal(resisted, 0)
+        require(sound, "Impact", "beam_model", self.beam_model, f"must be {RESISTED_BEAM}")
 
     def _repr_html_(self) -> str:
         """Return a table of all parameters for notebooks, with units."""

@@ -86,6 +86,14 @@ _ROWS = (
         for kind, units, text in _SPRINGS
         for side in ("left", "right")
     ),
+    *(
+        (field, units, text, f"impact.beam.{field}")
+        for field, units, text in (
+            ("mass_damping", "s-1", "damping over mass, of the beam"),
+            ("stiffness_damping", "s", "damping over bending stiffness, of the beam"),
+            ("damping_ratio", "1", "damping ratio of the beam's modes"),
+        )
+    ),
     ("beam_span", "m", "span of the beam", "impact.beam.span"),
     ("beam_width", "m", "width of the beam", "impact.beam.width"),
     ("beam_depth", "m", "depth of the beam", "impact.beam.depth"),

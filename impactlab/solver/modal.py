@@ -138,7 +138,7 @@ def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Modes:
 
 
 @compiled
-def _renew(modes: Modes, section: FibreSection, grid: BeamGrid) -> None:
+def _renew(modes: Modes, case: Record, section: FibreSection, grid: BeamGrid) -> None:
     rest_modes(modes, grid, section.stiffness, section.yield_curvature)
 
 
@@ -325,6 +325,7 @@ def _largest(state: State, w_max: float) -> float:
     return largest_deflection(state.extra.leaps, state.extra.D, w_max)
 
 
+FLIGHT = Flight(_leap, _retrace, _largest)
 MODEL = BeamModel(
     _make,
     _step,
@@ -333,7 +334,7 @@ MODEL = BeamModel(
     _deflect,
     _spread,
     flight_stride=64,
-    flight=Flight(_leap, _retrace, _largest),
+    flight=FLIGHT,
     renew=_renew,
     take=take_modes,
 )

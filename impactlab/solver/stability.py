@@ -22,7 +22,9 @@ indentations show.
 
 A damper c of the contact (N s/m) counts as 4 c/dt beside k_c (contact_damping.py). With h, a half
 (modal: the whole) of c dt times what k_c is multiplied by, this makes the largest dt smaller by
-sqrt(1 + h^2) - h.
+sqrt(1 + h^2) - h. Leapfrog's lagging damping beta of the bending stiffness (resistance.py) adds
+beta omega^2 dt/4 to h, of the first term, with which dt^2 omega^2 + 2 beta dt omega^2 <= 4; damping
+of the mass, which is central, and that of modes (resisted_modes.py) change nothing.
 """
 
 from __future__ import annotations
@@ -183,7 +185,8 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
         right = case.stiffness_right if case.support_right == SPRUNG else 0.0
         omega_squared = 16.0 * EI / (mu * dx**4) + 2.0 * max(left, right) / (mu * dx)
     dt = 2.0 / math.sqrt(omega_squared + contact)
-    return _damped(dt, 0.5 * c * contact / k_c * dt)
+    lag = 0.25 * case.stiffness_damping * omega_squared * dt
+    return _damped(dt, 0.5 * c * contact / k_c * dt + lag)
 
 
 @compiled

@@ -20,6 +20,7 @@ from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, SECTION, flatten
+from impactlab.solver import RESISTANCES
 from impactlab.types import Floats
 from impactlab.variables import described, provenance
 
@@ -122,7 +123,7 @@ IMPACT_PARAMETERS = [
     for name, entry in PARAMETERS.items()
     if entry.path[0] == "impact"
     and name not in ("contact", *TIMOSHENKO_OPTIONS, "beam_model", "load", "shear_coefficient")
-    and name not in ("strike_position", "support_left", "support_right", *SECTION)
+    and name not in ("strike_position", "support_left", "support_right", *SECTION, *RESISTANCES)
     and "stiffness_" not in name
 ]
 """Parameters of an impact, without those of the beam models alone."""

@@ -21,6 +21,7 @@ from impactlab.fem3d.solver.estimates import checked_patch, checked_size, unifor
 from impactlab.fem3d.solver.impulses import bulges
 from impactlab.model.checks import positive
 from impactlab.model.impact import MID_SPAN, Impact
+from impactlab.solver import RESISTANCES
 from impactlab.types import Floats
 
 Integers = NDArray[np.int32]
@@ -141,11 +142,12 @@ def _refuse_other_beams(impact: Impact) -> None:
         (impact.beam, "support_left", "pinned"),
         (impact.beam, "support_right", "pinned"),
         (impact, "strike_position", MID_SPAN),
+        *((impact.beam, field, 0.0) for field in RESISTANCES),
     ):
         if (value := getattr(owner, field)) != plain:
             raise ValueError(
                 f"{type(owner).__name__}.{field} = {value!r}: the 3-D model is a quarter of a "
-                f"rectangular pinned beam struck at mid-span: set it to {plain!r}"
+                f"rectangular pinned undamped beam struck at mid-span: set it to {plain!r}"
             )
 
 
