@@ -57,7 +57,7 @@ class ResistedModes(NamedTuple):
 
 
 @allocating
-def _make(case: Record, section: FibreSection, grid: BeamGrid) -> ResistedModes:
+def make(case: Record, section: FibreSection, grid: BeamGrid) -> ResistedModes:
     modes = make_modes(grid, section.stiffness, section.yield_curvature)
     size = modes.q.size
     return ResistedModes(
@@ -66,12 +66,12 @@ def _make(case: Record, section: FibreSection, grid: BeamGrid) -> ResistedModes:
 
 
 @compiled
-def _take(extra: ResistedModes, table: Array) -> None:
+def take(extra: ResistedModes, table: Array) -> None:
     take_modes(extra.modes, table)
 
 
 @compiled
-def _renew(extra: ResistedModes, case: Record, section: FibreSection, grid: BeamGrid) -> None:
+def renew(extra: ResistedModes, case: Record, section: FibreSection, grid: BeamGrid) -> None:
     rest_modes(extra.modes, grid, section.stiffness, section.yield_curvature)
     damping = case.mass_damping + case.stiffness_damping + case.damping_ratio
     extra.acts[0] = 1 if damping > 0.0 else 0
@@ -215,7 +215,7 @@ def _largest(state: State, w_max: float) -> float:
 
 
 MODEL = BeamModel(
-    _make,
+    make,
     _step,
     _curvature,
     _energy,
@@ -223,6 +223,6 @@ MODEL = BeamModel(
     _spread,
     flight_stride=modal.MODEL.flight_stride,
     flight=Flight(_leap, _retrace, _largest),
-    renew=_renew,
-    take=_take,
+    renew=renew,
+    take=take,
 )
