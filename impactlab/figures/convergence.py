@@ -340,6 +340,7 @@ def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     selected = _COST.plan(runs)
     given = {name: runs[name].reset_coords(drop=True) for name in _INPUTS}
     others = {"support_left": "pinned", "support_right": "pinned", "strike_position": 0.5}
+    others |= {"stiffness_damping": 0.0}
     others |= {
         f"{kind}stiffness_{side}": 0.0 for kind in ("", "rotational_") for side in ("left", "right")
     }

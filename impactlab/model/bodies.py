@@ -13,7 +13,8 @@ from impactlab.model.cross_section import Section
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI
 from impactlab.model.section import SHAPES, check_section, section_fields
-from impactlab.solver import RESISTANCES, SUPPORTS
+from impactlab.solver import RESISTANCES as RESISTANCES
+from impactlab.solver import SUPPORTS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,8 +108,11 @@ class Beam:
     stiffness_damping : Quantity, default 0
         Damping force over that of elastic bending, per rate, Rayleigh's beta, in s.
     damping_ratio : Quantity, default 0
-        Damping of each mode over its critical one, of 1; with the scheme "modal" alone. Damping
-        needs the beam models "euler_bernoulli" or "elastic" (solver/resistance.py).
+        Damping of each mode over its critical one, of 1; with the scheme "modal" alone.
+    foundation_stiffness : Quantity, default 0
+        Force per length over the deflection of a bed of springs beneath the beam (Winkler), in
+        N/m2; they pull as they push. Damping and foundation need the beam models "euler_bernoulli"
+        or "elastic" (solver/resistance.py).
 
     Raises
     ------
@@ -144,6 +148,7 @@ class Beam:
     mass_damping: SI[float] = SI("s-1", 0.0)
     stiffness_damping: SI[float] = SI("s", 0.0)
     damping_ratio: SI[float] = SI("1", 0.0)
+    foundation_stiffness: SI[float] = SI("N m-2", 0.0)
 
     def __post_init__(self) -> None:
         instance("Beam", "material", self.material, Material)

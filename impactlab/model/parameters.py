@@ -92,6 +92,7 @@ _ROWS = (
             ("mass_damping", "s-1", "damping over mass, of the beam"),
             ("stiffness_damping", "s", "damping over bending stiffness, of the beam"),
             ("damping_ratio", "1", "damping ratio of the beam's modes"),
+            ("foundation_stiffness", "N m-2", "stiffness of the beam's foundation"),
         )
     ),
     ("beam_span", "m", "span of the beam", "impact.beam.span"),

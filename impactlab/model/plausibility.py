@@ -76,6 +76,7 @@ _LIMITS = {
     "sphere_radius": (1e-9, 1e-6, 10.0, inf, "m", "atoms are 1e-10 m wide"),
     "beam_depth": (1e-9, 1e-6, 10.0, inf, "m", "atoms are 1e-10 m wide"),
     "beam_width": (1e-9, 1e-6, 100.0, inf, "m", "atoms are 1e-10 m wide"),
+    "foundation_stiffness": (0.0, 0.0, 1e11, inf, "N/m2", "a block of steel has about 1e11"),
     "damping_ratio": (0.0, 0.0, _DAMPED, inf, "of critical", "metal structures have 0.001 to 0.05"),
     **{
         f"beam_{field}": (1e-9, 1e-6, 1.0, inf, "m", "atoms are 1e-10 m wide")

@@ -15,7 +15,7 @@ SHAPES = ("rectangle", "box", "tube", "circle", "i", "profile")
 """Names of the shapes of the section (model/section.py); the index is the kernels' switch."""
 SUPPORTS = ("pinned", "clamped", "free", "elastic")
 """What holds an end of the beam; the index is the kernels' switch."""
-RESISTANCES = ("mass_damping", "stiffness_damping", "damping_ratio")
+RESISTANCES = ("mass_damping", "stiffness_damping", "damping_ratio", "foundation_stiffness")
 """What resists the beam's motion beside bending: fields of beams and of the case table."""
 LOADS = ("point", "contact_patch")
 """Where the contact force acts on the beam; the index is the kernels' switch."""

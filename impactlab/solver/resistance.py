@@ -1,7 +1,7 @@
-"""The Euler-Bernoulli beam by leapfrog with damping, after Rayleigh.
+"""The Euler-Bernoulli beam by leapfrog with Rayleigh's damping, on Winkler's foundation.
 
-rho A w_tt + alpha rho A w_t + beta (EI w_xxxx)_t = M_xx + p, with the elastic stiffness, springs of
-ends included, where sections yield, too. With u = dt w_t at half steps, K of the grid and its
+rho A w_tt + alpha rho A w_t + beta (EI w_xxxx + k w)_t = M_xx - k w + p, with the elastic EI and
+springs of ends where sections yield, too. With u = dt w_t at half steps, the grid's stiffness K and
 masses m, a step is
 
     (1 + h) u_after = (1 - h) u - dt^2/m (K w - source - F) - beta dt/m K u,  h = alpha dt/2:
@@ -39,7 +39,7 @@ class Resistance(NamedTuple):
 
     front: that of euler_bernoulli.py. before: u a step earlier (m); drag: what the stiffness's
     damping takes from it in a step (m), (last + 3,). lost: the work of damping before the last
-    step, J, (1,). h: see above. lag = beta/dt.
+    step, J, (1,). h: see above. lag = beta/dt; bed = dt^2 k/(rho A).
     """
 
     front: Array
@@ -48,6 +48,7 @@ class Resistance(NamedTuple):
     lost: Array
     h: float
     lag: float
+    bed: float
 
 
 @allocating
@@ -60,12 +61,13 @@ def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Resistance:
         np.zeros(1),
         0.5 * case.mass_damping * grid.dt,
         case.stiffness_damping / grid.dt,
+        grid.dt**2 * case.foundation_stiffness / grid.mu,
     )
 
 
 @compiled
 def _acts(extra: Resistance) -> bool:
-    return bool(extra.h > 0.0 or extra.lag > 0.0)
+    return bool(extra.h > 0.0 or extra.lag > 0.0 or extra.bed > 0.0)
 
 
 @inlined
@@ -90,24 +92,40 @@ def _take_work(
 
 @vectorised
 def _drag(
-    w: Array, now: int, drag: Array, lag: float, grid: BeamGrid, start: int, stop: int
+    w: Array,
+    now: int,
+    drag: Array,
+    lag: float,
+    bed: float,
+    grid: BeamGrid,
+    start: int,
+    stop: int,
 ) -> None:
     """Set what the stiffness's damping takes, from the last step of w."""
     last, share = 1 - now, lag * grid.stiffness
     for i in range(np.uint64(start), np.uint64(stop)):
         fourth = w[now, i - TWO] + w[now, i + TWO] - w[last, i - TWO] - w[last, i + TWO]
         fourth -= 4.0 * (w[now, i - ONE] + w[now, i + ONE] - w[last, i - ONE] - w[last, i + ONE])
-        drag[i] = share * (fourth + 6.0 * (w[now, i] - w[last, i]))
+        step = w[now, i] - w[last, i]
+        drag[i] = share * (fourth + 6.0 * step) + lag * bed * step
 
 
 @vectorised
 def _resist(
-    w: Array, now: int, u: Array, before: Array, drag: Array, h: float, start: int, stop: int
+    w: Array,
+    now: int,
+    u: Array,
+    before: Array,
+    drag: Array,
+    h: float,
+    bed: float,
+    start: int,
+    stop: int,
 ) -> None:
     """Mend a step that was made without resistance."""
     after, per = 1 - now, 1.0 / (1.0 + h)
     for i in range(np.uint64(start), np.uint64(stop)):
-        change = per * (u[i] - drag[i] - h * before[i]) - u[i]
+        change = per * (u[i] - drag[i] - h * before[i] - bed * w[now, i]) - u[i]
         u[i] += change
         w[after, i] += change
 
@@ -115,7 +133,7 @@ def _resist(
 @inlined
 def _step(state: State, now: int, F: float) -> None:
     _, _, grid, beam, _, extra = state
-    front, before, drag, lost, h, lag = extra
+    front, before, drag, lost, h, lag, bed = extra
     w, u = beam.w, beam.u
     start, stop = front[0], front[2] + 1
     acts = _acts(extra)
@@ -123,10 +141,10 @@ def _step(state: State, now: int, F: float) -> None:
         work = _take_work(u, before, drag, h, grid, start, stop)
         lost[0] += grid.mu * grid.dx / grid.dt**2 * work
         if lag > 0.0:
-            _drag(w, now, drag, lag, grid, start, stop)
+            _drag(w, now, drag, lag, bed, grid, start, stop)
     _PLAIN_STEP(_plain(state), now, F)
     if acts:
-        _resist(w, now, u, before, drag, h, start, stop)
+        _resist(w, now, u, before, drag, h, bed, start, stop)
         mirror(w, now, u, grid)
 
 
@@ -136,12 +154,13 @@ def _curvature(state: State, now: int) -> float:
 
 
 @compiled
-def _resisted_energy(beam: BeamState, extra: Resistance, grid: BeamGrid) -> float:
-    """Return the kinetic energy and the work of damping, in J."""
-    u, before, total = beam.u, extra.before, 0.0
+def _resisted_energy(beam: BeamState, now: int, extra: Resistance, grid: BeamGrid) -> float:
+    """Return the kinetic energy, that of the foundation, and the work of damping, in J."""
+    w, u, before, total = beam.w[now], beam.u, extra.before, 0.0
     for i in range(2, grid.last + 1):
         force = extra.drag[i] + extra.h * (u[i] + before[i])
-        total += 0.5 * copies(grid, i) * before[i] * (u[i] + force)
+        twice = before[i] * (u[i] + force) + extra.bed * w[i] * w[i]
+        total += 0.5 * copies(grid, i) * twice
     return grid.mu * grid.dx / grid.dt**2 * total + extra.lost[0]
 
 
@@ -152,7 +171,9 @@ def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
     EI = state.section.stiffness
     elastic = bending_energy(state.beam, state.plastic.M_0, EI, state.grid, now)
-    return stored + dissipated + elastic + _resisted_energy(state.beam, state.extra, state.grid)
+    return (
+        stored + dissipated + elastic + _resisted_energy(state.beam, now, state.extra, state.grid)
+    )
 
 
 @compiled

@@ -1,4 +1,7 @@
-"""The modal scheme with damping: alpha and beta of Rayleigh, and one ratio zeta of all modes.
+"""The modal scheme with damping, and on Winkler's foundation.
+
+The foundation k adds k/(rho A) to each omega^2, and its share to the stiffness K; modes and their
+curvatures are the same. Damping is alpha and beta of Rayleigh, and one ratio zeta of all modes.
 
 A free mode decays as exp(-r) cos(theta_d) in a step, with theta = omega dt up to pi/2 (modal.py),
 
@@ -30,6 +33,7 @@ import numpy as np
 from impactlab.solver import modal
 from impactlab.solver.beam import BeamGrid
 from impactlab.solver.fibre_plasticity import plastic_energy
+from impactlab.solver.flight import FRESH, WAIT
 from impactlab.solver.jit import allocating, compiled, fused, inlined, summing
 from impactlab.solver.modes import Modes, make_modes, rest_modes, span, take_modes
 from impactlab.solver.section import FibreSection
@@ -40,13 +44,15 @@ _PLAIN_STEP, _PLAIN_ENERGY = modal.MODEL.step, modal.MODEL.energy
 _PLAIN_CURVATURE, _PLAIN_DEFLECT = modal.MODEL.curvature, modal.MODEL.deflect
 _PLAIN_SPREAD = modal.MODEL.spread
 _PLAIN_LEAP, _PLAIN_RETRACE, _PLAIN_LARGEST = modal.FLIGHT
+_LEFT_OUT = 3.0 / 7.0
+"""Of the foundation, of the modes left out: their sum of k^-8 over that of k^-4 and the first."""
 
 
 class ResistedModes(NamedTuple):
     """Modes, and what resists them.
 
     decay: g; before: u a step earlier (m); lost: the work of damping before the last step (J), of
-    each mode; (n + 1,). acts: whether there is any damping, (1,).
+    each mode; (n + 1,). acts: whether there is any damping, and a foundation, (2,).
     """
 
     modes: Modes
@@ -58,34 +64,44 @@ class ResistedModes(NamedTuple):
 
 @allocating
 def make(case: Record, section: FibreSection, grid: BeamGrid) -> ResistedModes:
+    """Return modes at rest, which renew makes those of a case."""
     modes = make_modes(grid, section.stiffness, section.yield_curvature)
     size = modes.q.size
     return ResistedModes(
-        modes, np.ones(size), np.zeros(size), np.zeros(size), np.zeros(1, dtype=np.int64)
+        modes, np.ones(size), np.zeros(size), np.zeros(size), np.zeros(2, dtype=np.int64)
     )
 
 
 @compiled
 def take(extra: ResistedModes, table: Array) -> None:
+    """Take over a table of modes."""
     take_modes(extra.modes, table)
 
 
 @compiled
 def renew(extra: ResistedModes, case: Record, section: FibreSection, grid: BeamGrid) -> None:
+    """Make the modes those of another case, at rest."""
     rest_modes(extra.modes, grid, section.stiffness, section.yield_curvature)
     damping = case.mass_damping + case.stiffness_damping + case.damping_ratio
     extra.acts[0] = 1 if damping > 0.0 else 0
-    if damping > 0.0:
+    extra.acts[1] = 1 if case.foundation_stiffness > 0.0 else 0
+    if damping > 0.0 or case.foundation_stiffness > 0.0:
         _resist(extra, case, grid, section.stiffness)
 
 
 @compiled
 def _resist(extra: ResistedModes, case: Record, grid: BeamGrid, EI: float) -> None:
-    """Let damping resist modes at rest."""
+    """Let damping and foundation resist modes at rest."""
     modes, dt = extra.modes, grid.dt
+    bed = dt * dt * case.foundation_stiffness / grid.mu
     for p in range(modes.q.size):
-        flexibility = modes.push[p] / modes.D[p]
-        theta = _angle(modes, grid, EI, p)
+        bending, flexibility = _angle(modes, grid, EI, p) ** 2, modes.push[p] / modes.D[p]
+        if bending > 0.0:
+            share = 1.0 if p < modes.q.size - 1 else _LEFT_OUT
+            flexibility /= 1.0 + share * bed / bending
+        elif bed > 0.0:
+            flexibility = modes.push[p] / bed
+        theta = min(math.sqrt(bending + bed), 0.5 * math.pi)
         r = 0.5 * (case.mass_damping * dt + case.stiffness_damping * theta * theta / dt)
         r += case.damping_ratio * theta
         extra.decay[p], extra.before[p], extra.lost[p] = math.exp(-2.0 * r), 0.0, 0.0
@@ -98,12 +114,12 @@ def _resist(extra: ResistedModes, case: Record, grid: BeamGrid, EI: float) -> No
 
 @compiled
 def _angle(modes: Modes, grid: BeamGrid, EI: float, p: int) -> float:
-    """Return by how much an undamped mode turns in a step (rad), at most pi/2."""
+    """Return omega dt of a mode without damping or foundation (rad)."""
     speed = grid.dt * math.sqrt(EI / grid.mu)
     if modes.table.size > 0:
-        return min(speed * modes.table[0, p] / span(grid) ** 2, 0.5 * math.pi)
+        return float(speed * modes.table[0, p] / span(grid) ** 2)
     length = (modes.q.size - 1) * grid.dx
-    return min(speed * ((2 * p + 1) * (0.5 * math.pi / length)) ** 2, 0.5 * math.pi)
+    return float(speed * ((2 * p + 1) * (0.5 * math.pi / length)) ** 2)
 
 
 @compiled
@@ -199,8 +215,11 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
 def _leap(
     state: State, now: int, gap: float, sphere: tuple[float, float], w_max: float, room: int
 ) -> int:
-    if state.extra.acts[0]:
+    extra, memory = state.extra, state.extra.modes.leaps.memory
+    if extra.acts[0]:
         return 0
+    if extra.acts[1] and memory[WAIT] == 0 and memory[FRESH] == 0:
+        modal.begin_flight(extra.modes, state.plastic, state.section.stiffness, state.grid, False)
     return _PLAIN_LEAP(_plain(state), now, gap, sphere, w_max, room)
 
 

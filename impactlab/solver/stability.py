@@ -5,7 +5,8 @@ Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
                       (physics.md, in the place of the paper's bar-wave limit), at all ends: of the
                       row sums of the curvatures' matrix, a free or clamped end's are smaller; a
                       free end that is struck has half the mass in the second term; the stiffest
-                      spring of an elastic end adds 2 k_t/(rho A dx)
+                      spring of an elastic end adds 2 k_t/(rho A dx),
+                      and a foundation k/(rho A)
     Timoshenko beam   4 (EI)_q/(rho I dx^2) + k G A/(rho I) + 4 k G A/(rho A dx^2) as first term
                       with any ends, too
     strip             beside it (D_s + 4 T/dx^2)/m + 4 nu^2 D_s/(rho I dx^2), and the force's lever
@@ -184,6 +185,7 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
         left = case.stiffness_left if case.support_left == SPRUNG else 0.0
         right = case.stiffness_right if case.support_right == SPRUNG else 0.0
         omega_squared = 16.0 * EI / (mu * dx**4) + 2.0 * max(left, right) / (mu * dx)
+        omega_squared += case.foundation_stiffness / mu
     dt = 2.0 / math.sqrt(omega_squared + contact)
     lag = 0.25 * case.stiffness_damping * omega_squared * dt
     return _damped(dt, 0.5 * c * contact / k_c * dt + lag)

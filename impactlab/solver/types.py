@@ -53,7 +53,7 @@ CASE = record(
     beam_rate_coefficient beam_rate_exponent beam_rate_sensitivity beam_reference_rate courant
     strike_position
     stiffness_left stiffness_right rotational_stiffness_left rotational_stiffness_right
-    mass_damping stiffness_damping damping_ratio
+    mass_damping stiffness_damping damping_ratio foundation_stiffness
     compliance bending_compliance stress_along stress_across
     width_stiffness width_inertia width_lever width_twist axis_compliance axis_bending
     """,

@@ -15,12 +15,12 @@ from impactlab.fem3d.solver.frames import FRAMES, Frames
 from impactlab.fem3d.solver.march import Energies, History, March, Progress
 from impactlab.fem3d.solver.mesh import Mesh, check_mesh, quarter_mesh
 from impactlab.fem3d.solver.system import System, ThreadPool
+from impactlab.model.bodies import RESISTANCES
 from impactlab.model.checks import integer, positive
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, SECTION, flatten
-from impactlab.solver import RESISTANCES
 from impactlab.types import Floats
 from impactlab.variables import described, provenance
 

@@ -19,9 +19,9 @@ from scipy.optimize import brentq
 
 from impactlab.fem3d.solver.estimates import checked_patch, checked_size, uniform
 from impactlab.fem3d.solver.impulses import bulges
+from impactlab.model.bodies import RESISTANCES
 from impactlab.model.checks import positive
 from impactlab.model.impact import MID_SPAN, Impact
-from impactlab.solver import RESISTANCES
 from impactlab.types import Floats
 
 Integers = NDArray[np.int32]
@@ -147,7 +147,8 @@ def _refuse_other_beams(impact: Impact) -> None:
         if (value := getattr(owner, field)) != plain:
             raise ValueError(
                 f"{type(owner).__name__}.{field} = {value!r}: the 3-D model is a quarter of a "
-                f"rectangular pinned undamped beam struck at mid-span: set it to {plain!r}"
+                "rectangular pinned beam without damping or foundation, struck at mid-span: set it "
+                f"to {plain!r}"
             )
 
 

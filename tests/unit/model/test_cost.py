@@ -32,6 +32,7 @@ PAPER: dict[str, Any] = {
     "stiffness_right": 0.0,
     "rotational_stiffness_left": 0.0,
     "rotational_stiffness_right": 0.0,
+    "stiffness_damping": 0.0,
     "strike_position": 0.5,
     "beam_model": BEAM_MODELS.index("euler_bernoulli"),
 }
