@@ -30,6 +30,8 @@ STATED |= {"beam_flange_thickness": 3e-3, "beam_web_thickness": 1e-3}
 HARDENING = {"beam_isotropic_hardening_modulus": 2e9, "beam_kinematic_hardening_modulus": 3e9}
 HARDENING |= {"beam_rate_coefficient": 40.4, "beam_rate_exponent": 4.0}
 HARDENING |= {"beam_rate_sensitivity": 0.02, "beam_reference_rate": 2.0}
+HARDENING |= {"mass_damping": 9.0, "stiffness_damping": 1e-6, "damping_ratio": 0.01}
+HARDENING |= {"foundation_stiffness": 1e6}
 HARDENING |= {
     f"{kind}stiffness_{side}": 1e6 for kind in ("", "rotational_") for side in ("left", "right")
 }

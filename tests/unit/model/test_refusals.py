@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import impactlab as il
+from impactlab.solver import RESISTANCES
 
 IMPACT = il.paper_impact()
 PARTS = {
@@ -49,6 +50,7 @@ REFUSED = {
         for kind in ("", "rotational_")
         for side in ("left", "right")
     },
+    **{("Beam", field): NEGATIVE for field in RESISTANCES},
     ("Impact", "velocity"): UNREAL,
     ("Impact", "gravity"): NEGATIVE,
     ("Impact", "contact"): ["hooke", "Hertz", "", None, 0],

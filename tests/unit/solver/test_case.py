@@ -40,7 +40,7 @@ def test_a_record_has_every_value_in_its_place(make_case):
         if not entry.choices and not entry.is_integer and "poisson" not in name
         if name not in THICKNESSES and not entry.any_word
     }
-    ratios = {"sphere_poissons_ratio": 0.1, "beam_poissons_ratio": 0.2}
+    ratios = {"sphere_poissons_ratio": 0.1, "beam_poissons_ratio": 0.2, "damping_ratio": 0.0}
     moduli = {"sphere_youngs_modulus": 1e9, "beam_youngs_modulus": 2e9, "beam_span": 9.0}
     moduli |= {"beam_rate_exponent": 4.0, "beam_rate_sensitivity": 0.0}
     values = numbers | ratios | moduli | {"nodes": 19, "points": 3, "strike_position": 5 / 18}
