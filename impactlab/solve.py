@@ -70,6 +70,7 @@ def solve(
     if samples:
         columns |= zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)
     if profiles:
+        _restore(strains, table)
         columns["equivalent_plastic_strain"] = _depth(strains[1], 1.0, points)
         columns["plastic_strain"] = _depth(strains[0], -1.0, points)
         columns["deflection"] = deflection
@@ -108,6 +109,14 @@ def fibre_section(case: Any) -> FibreSection:
     (fibres,) = fibre_table(np.atleast_1d(case))
     section: FibreSection = make_section(case, fibres)
     return section
+
+
+def _restore(strains: np.ndarray[Any, Any], table: np.ndarray[Any, Any]) -> None:
+    """Make strains of the kernels' fibres those of the real ones, outermost first."""
+    z, _, ratio = np.moveaxis(table, 1, 0)
+    for run in np.flatnonzero((ratio != 1.0).any(axis=1)):
+        order = np.argsort(-z[run] * ratio[run])
+        strains[:, run] = (strains[:, run] * ratio[run])[:, :, order]
 
 
 def _depth(lower: np.ndarray[Any, Any], sign: float, points: int) -> np.ndarray[Any, Any]:

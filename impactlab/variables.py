@@ -128,6 +128,11 @@ WARNINGS: dict[str, tuple[int, str]] = {
         "the beam is round where the sphere strikes, and the contact law is that of a flat top: "
         "the contact is too stiff",
     ),
+    "skin_may_give": (
+        outputs.SKIN_MAY_GIVE,
+        "the contact radius is above a fifth of the outer layer's thickness, and the contact law "
+        "is that of its metal alone: a softer layer beneath makes contacts longer",
+    ),
 }
 """Warnings on available responses, by name: (bit in `remarks`, in words)."""
 OUTSIDE_DATA = sum(bit for name, (bit, _) in WARNINGS.items() if name.endswith("outside_data"))

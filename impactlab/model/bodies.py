@@ -84,7 +84,7 @@ class Beam:
     shear_coefficient : Quantity, optional
         Shear force over G A times the shear angle, of Timoshenko's beam alone; by default that of
         the shape: 5/6 of a rectangle, Cowper's of the others (model/shapes.py).
-    shape : {"rectangle", "box", "tube", "circle", "i", "profile"}, default "rectangle"
+    shape : {"rectangle", "box", "tube", "circle", "i", "profile", "laminate"}, default "rectangle"
         Shape of the section. Tubes and circles are round: their width and depth are the diameter.
     wall_thickness : Quantity, optional
         Thickness of the wall of a box or a tube, in m; these need it, and other shapes have none.
@@ -94,6 +94,11 @@ class Beam:
         Width over the depth, with shape "profile" alone: distances from the axis over half the
         depth, from 0 to 1, and widths over the largest one, which is `width`; straight in between,
         two of one distance are a step. Kept as text, "0 0.2, 0.8 0.2, 0.8 1, 1 1".
+    layers : str or sequence of rows of float, optional
+        Layers of other metals, with shape "laminate" alone: share of half the depth, Young's
+        modulus (Pa), yield stress (Pa) and density (kg/m3), from the axis outwards, mirrored below
+        it. The rest outside is of `material`, which the sphere touches. Kept as text,
+        "0.8 70e9 250e6 2700".
     support_left, support_right : {"pinned", "clamped", "free", "elastic"}, default "pinned"
         What holds each end: "pinned" (deflection and moment are zero; a roller is the same, without
         an axial force), "clamped" (deflection and slope are zero), "free" (moment and shear force
@@ -139,6 +144,7 @@ class Beam:
     flange_thickness: SI[float | None] = SI("m", None)
     web_thickness: SI[float | None] = SI("m", None)
     profile: Any = None
+    layers: Any = None
     support_left: str = "pinned"
     support_right: str = "pinned"
     stiffness_left: SI[float] = SI("N m-1", 0.0)
@@ -177,6 +183,9 @@ class Beam:
             The section (model/section.py, model/shapes.py).
         """
         sizes = {field: getattr(self, field) for field in section_fields(self.shape)}
+        if "layers" in sizes:
+            metal = self.material
+            sizes["skin"] = metal.youngs_modulus, metal.yield_stress, metal.density
         return SHAPES[self.shape](**sizes)
 
     @property

@@ -11,7 +11,7 @@ BEAM_MODELS = ("euler_bernoulli", "elastic", "timoshenko", "spring_mass", "rigid
 """Names of the models of the beam; the index is the kernels' switch."""
 LUMPED_MODELS = BEAM_MODELS[3:]
 """Those that move as one mass."""
-SHAPES = ("rectangle", "box", "tube", "circle", "i", "profile")
+SHAPES = ("rectangle", "box", "tube", "circle", "i", "profile", "laminate")
 """Names of the shapes of the section (model/section.py); the index is the kernels' switch."""
 SUPPORTS = ("pinned", "clamped", "free", "elastic")
 """What holds an end of the beam; the index is the kernels' switch."""

@@ -112,7 +112,9 @@ def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
             if lift is not None:
                 answer.permanent_indentation += lift(state, contact, 0.0)
             responses.read_rebound(answer, case, events)
-            responses.read_beam(answer, case, events, plastic.peeq, grid, dissipated)
+            responses.read_beam(
+                answer, case, events, plastic.peeq, section.strain_ratio, grid, dissipated
+            )
         return now
 
     return run

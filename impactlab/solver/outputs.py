@@ -37,6 +37,7 @@ STRUCK_NEAR_END = 256
 # What the beam model lacks under the sphere, by shape of the section.
 WALL_MAY_DENT = 512
 ROUND_TOP = 1024
+SKIN_MAY_GIVE = 2048
 
 
 SHORT_PAUSE = 0.05

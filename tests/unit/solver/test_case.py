@@ -23,7 +23,7 @@ OF_SECTION = {
 DERIVED = (
     *("compliance", "bending_compliance", "axis_compliance", "axis_bending"),
     *("width_stiffness", "width_inertia", "width_lever", "width_twist"),
-    *("stress_along", "stress_across"),
+    *("stress_along", "stress_across", "skin_thickness"),
 )
 
 
@@ -58,8 +58,9 @@ def test_a_record_has_every_value_in_its_place(make_case):
     }
     expected = values | numbers_of_names | {"duration": 0.7}
     expected |= dict.fromkeys((*DERIVED, *THICKNESSES), 0.0)
-    assert not case["beam_profile"].any()
-    names = {*CASE.names} - {*OF_SECTION, "beam_profile"}
+    lists = {"beam_profile", "beam_layers"}
+    assert not any(case[name].any() for name in lists)
+    names = {*CASE.names} - {*OF_SECTION} - lists
     assert {name: case[name] for name in names} == expected
     beam = [values[f"beam_{name}"] for name in ("density", "youngs_modulus", "poissons_ratio")]
     sizes = [values[name] for name in ("beam_width", "beam_depth", "shear_coefficient")]
