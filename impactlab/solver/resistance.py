@@ -40,6 +40,7 @@ class Resistance(NamedTuple):
     front: that of euler_bernoulli.py. before: u a step earlier (m); drag: what the stiffness's
     damping takes from it in a step (m), (last + 3,). lost: the work of damping before the last
     step, J, (1,). h: see above. lag = beta/dt; bed = dt^2 k/(rho A).
+    acts: whether any of the three is above 0.
     """
 
     front: Array
@@ -49,6 +50,7 @@ class Resistance(NamedTuple):
     h: float
     lag: float
     bed: float
+    acts: bool
 
 
 @allocating
@@ -62,12 +64,8 @@ def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Resistance:
         0.5 * case.mass_damping * grid.dt,
         case.stiffness_damping / grid.dt,
         grid.dt**2 * case.foundation_stiffness / grid.mu,
+        case.mass_damping > 0.0 or case.stiffness_damping > 0.0 or case.foundation_stiffness > 0.0,
     )
-
-
-@compiled
-def _acts(extra: Resistance) -> bool:
-    return bool(extra.h > 0.0 or extra.lag > 0.0 or extra.bed > 0.0)
 
 
 @inlined
@@ -133,11 +131,11 @@ def _resist(
 @inlined
 def _step(state: State, now: int, F: float) -> None:
     _, _, grid, beam, _, extra = state
-    front, before, drag, lost, h, lag, bed = extra
+    front, before, drag, lost, h, lag, bed, acts = extra
     w, u = beam.w, beam.u
-    start, stop = front[0], front[2] + 1
-    acts = _acts(extra)
+    start, stop = front[2], front[2]
     if acts:
+        start, stop = front[0], front[2] + 1
         work = _take_work(u, before, drag, h, grid, start, stop)
         lost[0] += grid.mu * grid.dx / grid.dt**2 * work
         if lag > 0.0:
@@ -166,7 +164,7 @@ def _resisted_energy(beam: BeamState, now: int, extra: Resistance, grid: BeamGri
 
 @compiled
 def _energy(state: State, now: int, F: float, u_mid: float) -> float:
-    if not _acts(state.extra):
+    if not state.extra.acts:
         return _PLAIN_ENERGY(_plain(state), now, F, u_mid)
     stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
     EI = state.section.stiffness
@@ -179,7 +177,7 @@ def _energy(state: State, now: int, F: float, u_mid: float) -> float:
 @compiled
 def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
     ahead, missing = _PLAIN_SPREAD(_plain(state), now, F / (1.0 + state.extra.h), a)
-    return ahead, 0.0 if _acts(state.extra) else missing  # `before` knows of the force's place
+    return ahead, 0.0 if state.extra.acts else missing  # `before` knows of the force's place
 
 
 MODEL = BeamModel(_make, _step, _curvature, _energy, euler_bernoulli.deflected, _spread)
