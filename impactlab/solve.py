@@ -72,6 +72,8 @@ def solve(
             *(array[start:end] for array in arrays),
             *fibres,
         )
+        if profiles and not stretches:
+            _restore(fibres, table[start:end])
         strains[:, start:end] = fibres[..., ::-1] if stretches else _depth(fibres, points)
     columns = {name: responses[name].copy() for name in responses.dtype.names or ()}
     if samples:
@@ -116,6 +118,14 @@ def fibre_section(case: Any) -> FibreSection:
     (fibres,) = fibre_table(np.atleast_1d(case))
     section: FibreSection = make_section(case, fibres)
     return section
+
+
+def _restore(strains: np.ndarray[Any, Any], table: np.ndarray[Any, Any]) -> None:
+    """Make strains of the kernels' fibres those of the real ones, outermost first."""
+    z, _, ratio = np.moveaxis(table, 1, 0)
+    for run in np.flatnonzero((ratio != 1.0).any(axis=1)):
+        order = np.argsort(-z[run] * ratio[run])
+        strains[:, run] = (strains[:, run] * ratio[run])[:, :, order]
 
 
 def _depth(lower: np.ndarray[Any, Any], points: int) -> np.ndarray[Any, Any]:

@@ -140,6 +140,11 @@ WARNINGS: dict[str, tuple[int, str]] = {
         "model leaves out, takes about 2 % or more off the largest deflection: "
         "beam_model: von_karman has it, and rollers have none",
     ),
+    "skin_may_give": (
+        outputs.SKIN_MAY_GIVE,
+        "the contact radius is above a fifth of the outer layer's thickness, and the contact law "
+        "is that of its metal alone: a softer layer beneath makes contacts longer",
+    ),
 }
 """Warnings on available responses, by name: (bit in `remarks`, in words)."""
 OUTSIDE_DATA = sum(bit for name, (bit, _) in WARNINGS.items() if name.endswith("outside_data"))

@@ -12,8 +12,9 @@ SIZES = {
     "circle": {"width": 0.03, "depth": 0.03},
     "i": {"width": 0.05, "depth": 0.03, "flange_thickness": 0.004, "web_thickness": 0.002},
     "profile": {"width": 0.05, "depth": 0.03, "profile": "0.0 0.2, 0.6 0.1, 0.6 0.5, 1.0 1.0"},
+    "laminate": {"width": 0.05, "depth": 0.03, "layers": "0.6 105000000000.0 172500000.0 3900.0"},
 }
-"""Fields of a beam of each shape, in m."""
+"""Fields of a beam of each shape, in m; the laminate's core has half of the steel's values."""
 assert SIZES.keys() == set(SHAPES)
 
 
@@ -32,9 +33,10 @@ WIDTHS = {
         0.05 * (0.5 + 0.5 * (abs(z) / 0.015 - 0.6) / 0.4),
         0.05 * (0.2 - 0.1 * abs(z) / 0.009),
     ),
+    "laminate": lambda z: np.where(abs(z) > 0.009, 0.05, 0.025),
 }
 """Width (m) at a distance z (m) from the axis."""
-BREAKS = {"box": [0.011], "tube": [0.012], "i": [0.011], "profile": [0.009]}
+BREAKS = {"box": [0.011], "tube": [0.012], "i": [0.011], "profile": [0.009], "laminate": [0.009]}
 """Places above the axis where the width jumps or has a vertical tangent, in m."""
 
 

@@ -66,7 +66,7 @@ def _springs(cases: Any) -> Array:
 
     EI is that of the integration rule.
     """
-    z, area = np.moveaxis(fibre_table(cases), 1, 0)
+    z, area, _ = np.moveaxis(fibre_table(cases), 1, 0)
     bending, span = cases["beam_youngs_modulus"] * np.sum(area * z * z, axis=1), cases["beam_span"]
     springs = np.zeros((2, 2, cases.size))
     for row, side in zip(springs, ("left", "right"), strict=True):

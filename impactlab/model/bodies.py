@@ -13,6 +13,7 @@ from impactlab.model.cross_section import Section
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI
 from impactlab.model.section import SHAPES, check_section, section_fields
+from impactlab.solver import RESISTANCES as RESISTANCES
 from impactlab.solver import SUPPORTS
 
 
@@ -83,7 +84,7 @@ class Beam:
     shear_coefficient : Quantity, optional
         Shear force over G A times the shear angle, of Timoshenko's beam alone; by default that of
         the shape: 5/6 of a rectangle, Cowper's of the others (model/shapes.py).
-    shape : {"rectangle", "box", "tube", "circle", "i", "profile"}, default "rectangle"
+    shape : {"rectangle", "box", "tube", "circle", "i", "profile", "laminate"}, default "rectangle"
         Shape of the section. Tubes and circles are round: their width and depth are the diameter.
     wall_thickness : Quantity, optional
         Thickness of the wall of a box or a tube, in m; these need it, and other shapes have none.
@@ -93,6 +94,11 @@ class Beam:
         Width over the depth, with shape "profile" alone: distances from the axis over half the
         depth, from 0 to 1, and widths over the largest one, which is `width`; straight in between,
         two of one distance are a step. Kept as text, "0 0.2, 0.8 0.2, 0.8 1, 1 1".
+    layers : str or sequence of rows of float, optional
+        Layers of other metals, with shape "laminate" alone: share of half the depth, Young's
+        modulus (Pa), yield stress (Pa) and density (kg/m3), from the axis outwards, mirrored below
+        it. The rest outside is of `material`, which the sphere touches. Kept as text,
+        "0.8 70e9 250e6 2700".
     support_left, support_right : str, default "pinned"
         What holds each end: "pinned" (deflection and moment are zero), "clamped" (deflection
         and slope are zero), "free" (moment and shear force are zero), "elastic" (springs) or
@@ -104,14 +110,24 @@ class Beam:
         Shear force over the deflection at an elastic end, in N/m.
     rotational_stiffness_left, rotational_stiffness_right : Quantity, default 0
         Moment over the slope at an elastic end, in N m (per rad).
+    mass_damping : Quantity, default 0
+        Damping force over mass and velocity, Rayleigh's alpha, in 1/s.
+    stiffness_damping : Quantity, default 0
+        Damping force over that of elastic bending, per rate, Rayleigh's beta, in s.
+    damping_ratio : Quantity, default 0
+        Damping of each mode over its critical one, of 1; with the scheme "modal" alone.
+    foundation_stiffness : Quantity, default 0
+        Force per length over the deflection of a bed of springs beneath the beam (Winkler), in
+        N/m2; they pull as they push. Damping and foundation need the beam models "euler_bernoulli"
+        or "elastic" (solver/resistance.py).
 
     Raises
     ------
     ValueError
         If a length is not finite and positive, the depth not below the span, the shear coefficient
-        not in (0, 1], shape or a support unknown, a stiffness negative, an elastic support without
-        any, or the material is not a `Material`; if a shape lacks a thickness, cannot have it, or
-        is round and not as wide as deep.
+        not in (0, 1], shape or a support unknown, a stiffness or a damping negative, an elastic
+        support without any, or the material is not a `Material`; if a shape lacks a thickness,
+        cannot have it, or is round and not as wide as deep.
 
     Examples
     --------
@@ -130,12 +146,17 @@ class Beam:
     flange_thickness: SI[float | None] = SI("m", None)
     web_thickness: SI[float | None] = SI("m", None)
     profile: Any = None
+    layers: Any = None
     support_left: str = "pinned"
     support_right: str = "pinned"
     stiffness_left: SI[float] = SI("N m-1", 0.0)
     stiffness_right: SI[float] = SI("N m-1", 0.0)
     rotational_stiffness_left: SI[float] = SI("N m", 0.0)
     rotational_stiffness_right: SI[float] = SI("N m", 0.0)
+    mass_damping: SI[float] = SI("s-1", 0.0)
+    stiffness_damping: SI[float] = SI("s", 0.0)
+    damping_ratio: SI[float] = SI("1", 0.0)
+    foundation_stiffness: SI[float] = SI("N m-2", 0.0)
 
     def __post_init__(self) -> None:
         instance("Beam", "material", self.material, Material)
@@ -150,6 +171,9 @@ class Beam:
         check_section(self)
         for side in ("left", "right"):
             _check_end(self, side)
+        for field in RESISTANCES:
+            resistance = number("Beam", field, getattr(self, field))
+            require(resistance >= 0, "Beam", field, resistance, "must not be negative")
 
     @property
     def section(self) -> Section:
@@ -161,6 +185,9 @@ class Beam:
             The section (model/section.py, model/shapes.py).
         """
         sizes = {field: getattr(self, field) for field in section_fields(self.shape)}
+        if "layers" in sizes:
+            metal = self.material
+            sizes["skin"] = metal.youngs_modulus, metal.yield_stress, metal.density
         return SHAPES[self.shape](**sizes)
 
     @property

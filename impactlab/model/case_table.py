@@ -15,14 +15,17 @@ from impactlab.model.contact_compliance import case_fields
 from impactlab.model.cost import flies
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
+from impactlab.model.laminate import LEAST_FIBRES, layer_rows
 from impactlab.model.parameters import (
     PARAMETERS,
     PROFILE_FIXED,
     SECTION,
+    WORDS,
     Value,
     flatten,
     with_values,
 )
+from impactlab.model.section import least_points
 from impactlab.model.shapes import profile_points
 from impactlab.solver import (
     AXIAL_SUPPORTS,
@@ -33,13 +36,17 @@ from impactlab.solver import (
     SCHEMES,
     SUPPORTS,
 )
-from impactlab.solver.types import CASE, PROFILE
+from impactlab.solver.types import CASE, LAYERS, PROFILE
 
 NO_REST = (
     "must be 1 of a beam that its ends let fly, for it does not come to rest: change it, or hold "
     "an end (support_left, support_right)"
 )
 """Why such a beam cannot be struck again."""
+MODAL_DAMPING = (
+    "is of modes: set scheme: modal, or state mass_damping and stiffness_damping instead"
+)
+"""End of the message that refuses it in leapfrog."""
 _ON_NODE = 1e-6
 """Distance (spacings) from a node at which a strike lies on it."""
 
@@ -92,6 +99,11 @@ def case_table(
         row = int(refused.argmax())
         run = f"run {first_run + row}: " if varied else ""
         raise ValueError(f"{run}strikes = {cases[row].strikes}: {NO_REST}")
+    refused = (cases["damping_ratio"] > 0.0) & (cases["scheme"] != SCHEMES.index("modal"))
+    if refused.any():
+        row = int(refused.argmax())
+        run = f"run {first_run + row}: " if varied else ""
+        raise ValueError(f"{run}damping_ratio = {cases['damping_ratio'][row]:g}: {MODAL_DAMPING}")
     between = cases["strike_position"] * (cases["nodes"] - 1)
     refused = abs(between - between.round()) > _ON_NODE
     if refused.any():
@@ -105,7 +117,7 @@ def case_table(
 def _check_lists(varied: Mapping[str, Any]) -> None:
     """Raise ValueError where a parameter cannot be varied, or has no list of values."""
     for name, values in varied.items():
-        if name == "beam_profile":
+        if name in WORDS:
             raise ValueError(f"varied: {name}: {PROFILE_FIXED}")
         if isinstance(values, str) or np.ndim(values) != 1:
             raise ValueError(f"varied: {name} = {values!r}: must be a list with one value per run")
@@ -169,6 +181,14 @@ def _table(
     points = profile_points(impact.beam.profile or ())
     values["beam_profile"] = np.zeros((PROFILE, 2))
     values["beam_profile"][: len(points)] = np.reshape(points, (-1, 2))
+    rows = layer_rows(impact.beam.layers or ())
+    values["beam_layers"] = np.zeros((LAYERS, 4))
+    values["beam_layers"][: len(rows)] = np.reshape(rows, (-1, 4))
+    if np.any(np.less(discretisation.points, least := least_points(impact.beam))):
+        raise ValueError(
+            f"points = {discretisation.points!r}: must be at least {least} with so many layers, of "
+            f"which each needs {LEAST_FIBRES} on either side of the axis"
+        )
     values |= _section_fields(impact.beam) | case_fields(impact)
     cases = np.zeros(runs, dtype=CASE)
     for name in CASE.names or ():
@@ -187,4 +207,5 @@ def _section_fields(beam: Beam) -> dict[str, Any]:
         "shear_stiffness": beam.shear_correction * shear_modulus * section.area,
         "stress_per_moment": section.stress_per_moment,
         "plastic_modulus": section.plastic_modulus,
+        "skin_thickness": section.skin_thickness,
     }

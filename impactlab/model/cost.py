@@ -29,6 +29,11 @@ def solved(cases: Any) -> Any:
 
 def flies(cases: Any) -> Any:
     """Return whether nothing holds the beam, so that it moves off under the blow."""
+    return _has_loose_ends(cases) & (cases["foundation_stiffness"] == 0.0)
+
+
+def _has_loose_ends(cases: Any) -> Any:
+    """Return whether its ends do not hold the beam."""
     (left, turn_left), (right, turn_right) = (_holds(cases, side) for side in ("left", "right"))
     turns = turn_left | turn_right
     return ~((left & right) | ((left | right) & turns))
@@ -69,6 +74,8 @@ def node_steps(cases: Any) -> Any:
     bending = 0.5 * wave * dx * np.sqrt(section.area / section.second_moment)
     bends = cases["beam_model"] <= BEAM_MODELS.index("elastic")
     modal = cases["scheme"] == SCHEMES.index("modal")
+    lag = cases["stiffness_damping"] / bending
+    bending = bending * (np.sqrt(1.0 + lag * lag) - lag)
     stretches = cases["beam_model"] == BEAM_MODELS.index("von_karman")
     beside = bending / np.sqrt(1.0 + stretches * (bending / wave) ** 2)
     largest = np.where(modal, wave, np.where(bends | stretches, beside, 0.5 * wave))
@@ -149,6 +156,10 @@ def swing(cases: Any) -> Any:
     square = (cases["sphere_mass"] * flexibility + beam / first) / stiffness
     x, y = cases["strike_position"], 1.0 - cases["strike_position"]
     square = square + cases["sphere_mass"] * (y * y * soft_left + x * x * soft_right)
+    bed = cases["foundation_stiffness"] * span
+    floats = _has_loose_ends(cases) & (bed > 0.0)
+    rocking = (1.0 + 12.0 * (x - 0.5) ** 2) * cases["sphere_mass"] + beam
+    square = square + np.where(floats, rocking / np.where(floats, bed, 1.0), 0.0)
     period = 2.0 * np.pi * np.sqrt(square + 0.5 * beam * (soft_left + soft_right))
     return np.where(cases["beam_model"] == BEAM_MODELS.index("rigid"), 0.0, period + hinge)
 

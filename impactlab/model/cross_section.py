@@ -117,6 +117,32 @@ class Section:
         """
         return 0.5 * self.depth / self.second_moment
 
+    @property
+    def skin_thickness(self) -> Any:
+        """Thickness of the outer one of several layers.
+
+        Returns
+        -------
+        float
+            Thickness, in m; 0 where there are none.
+        """
+        return 0.0
+
+    def strain_ratio(self, z: Floats) -> Floats:
+        """Return the yield strain of the metal over that of the outermost one.
+
+        Parameters
+        ----------
+        z : numpy.ndarray
+            Distance from the axis, in m, at most half the depth.
+
+        Returns
+        -------
+        numpy.ndarray
+            Ratio, of 1.
+        """
+        return np.ones_like(z)
+
     def mass_per_length(self, density: Any) -> Any:
         """Return the mass of a beam per length.
 

@@ -22,6 +22,7 @@ from impactlab.solver import (
     COMPLIANCES,
     LOADS,
     PRESTRESSES,
+    RESISTANCES,
     WAVE_MODELS,
 )
 from impactlab.solver.contact import LAWS
@@ -36,6 +37,21 @@ MOVING_SUPPORTS = ("free", "elastic")
 """Supports whose end can be struck."""
 SPRUNG_BEAM = f"{' or '.join(BENDING_MODELS)} with elastic ends: change it, or set other supports"
 """End of messages on what elastic ends cannot have."""
+RESISTED_BEAM = (
+    f"{' or '.join(BENDING_MODELS)} with {', '.join(RESISTANCES[:-1])} or {RESISTANCES[-1]}: "
+    "change it, or set these to 0"
+)
+"""The same, of what resists the motion."""
+STRUCK_AGAIN = (
+    f"must be 1 with {', '.join(RESISTANCES[:-1])} or {RESISTANCES[-1]}: change it, or set these "
+    "to 0"
+)
+"""Message on repeated strikes."""
+STRETCHED_LAYERS = (
+    "must not be von_karman with shape: laminate, for it stretches one metal alone: change it, or "
+    "set another shape"
+)
+"""Message on sections of layers."""
 OTHER_BEAM = (
     "with ends that are not pinned, or a strike beside mid-span: change it, or set support_left: "
     "pinned, support_right: pinned and strike_position: 0.5"
@@ -153,6 +169,13 @@ class Impact:
         sprung = np.equal(beam.support_left, "elastic") | np.equal(beam.support_right, "elastic")
         sound = np.isin(self.beam_model, BENDING_MODELS) | ~sprung
         require(sound, "Impact", "beam_model", self.beam_model, f"must be {SPRUNG_BEAM}")
+        resisted = sum(np.greater(getattr(beam, field), 0.0) for field in RESISTANCES)
+        sound = np.isin(self.beam_model, BENDING_MODELS) | np.equal(resisted, 0)
+        require(sound, "Impact", "beam_model", self.beam_model, f"must be {RESISTED_BEAM}")
+        alone = np.equal(strikes, 1) | np.equal(resisted, 0)
+        require(alone, "Impact", "strikes", strikes, STRUCK_AGAIN)
+        sound = np.not_equal(beam.shape, "laminate") | np.not_equal(self.beam_model, "von_karman")
+        require(sound, "Impact", "beam_model", self.beam_model, STRETCHED_LAYERS)
 
     def _repr_html_(self) -> str:
         """Return a table of all parameters for notebooks, with units."""

@@ -87,6 +87,15 @@ _ROWS = (
         for kind, units, text in _SPRINGS
         for side in ("left", "right")
     ),
+    *(
+        (field, units, text, f"impact.beam.{field}")
+        for field, units, text in (
+            ("mass_damping", "s-1", "damping over mass, of the beam"),
+            ("stiffness_damping", "s", "damping over bending stiffness, of the beam"),
+            ("damping_ratio", "1", "damping ratio of the beam's modes"),
+            ("foundation_stiffness", "N m-2", "stiffness of the beam's foundation"),
+        )
+    ),
     ("beam_span", "m", "span of the beam", "impact.beam.span"),
     ("beam_width", "m", "width of the beam", "impact.beam.width"),
     ("beam_depth", "m", "depth of the beam", "impact.beam.depth"),
@@ -100,6 +109,7 @@ _ROWS = (
         )
     ),
     ("beam_profile", "1", "width over the depth", "impact.beam.profile"),
+    ("beam_layers", "1", "layers from the axis outwards", "impact.beam.layers"),
     ("shear_coefficient", "1", "shear coefficient of the beam", "impact.beam.shear_coefficient"),
     *(
         (f"beam_{field}", units, f"{text} of the beam", f"impact.beam.material.{field}")
@@ -125,14 +135,16 @@ _CHOICES = {
     "scheme": SCHEMES,
 }
 _WHOLE = ("strikes", "nodes", "points")
-SECTION = ("beam_shape", "beam_profile", *(f"beam_{field}" for field in THICKNESSES))
+WORDS = ("beam_profile", "beam_layers")
+"""Parameters of the section that are lists of numbers, as text."""
+SECTION = ("beam_shape", *WORDS, *(f"beam_{field}" for field in THICKNESSES))
 """Parameters of the section beside width and depth."""
 PROFILE_FIXED = "is the same in all runs: vary beam_width and beam_depth, which scale it"
 """End of the message that refuses it as a factor."""
 PARAMETERS: dict[str, Parameter] = {
     name: Parameter(
         *(name, units, text, tuple(path.split(".")), _CHOICES.get(name, ()), name in _WHOLE),
-        any_word=name == "beam_profile",
+        any_word=name in WORDS,
     )
     for name, units, text, path in _ROWS
 }

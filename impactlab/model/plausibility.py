@@ -23,6 +23,7 @@ LIGHT = 299_792_458.0
 _PIERCES = 0.1
 """Damage number rho v^2/sigma_y from which on metals deform extensively (Johnson, Impact Strength
 of Materials, 1972): a dent is then no longer small beside the sphere."""
+_DAMPED = 0.2  # of critical, of the first mode
 _STOCKY = 0.2  # depth over span from which on shear is no small part of a beam's deflection
 
 
@@ -75,6 +76,8 @@ _LIMITS = {
     "sphere_radius": (1e-9, 1e-6, 10.0, inf, "m", "atoms are 1e-10 m wide"),
     "beam_depth": (1e-9, 1e-6, 10.0, inf, "m", "atoms are 1e-10 m wide"),
     "beam_width": (1e-9, 1e-6, 100.0, inf, "m", "atoms are 1e-10 m wide"),
+    "foundation_stiffness": (0.0, 0.0, 1e11, inf, "N/m2", "a block of steel has about 1e11"),
+    "damping_ratio": (0.0, 0.0, _DAMPED, inf, "of critical", "metal structures have 0.001 to 0.05"),
     **{
         f"beam_{field}": (1e-9, 1e-6, 1.0, inf, "m", "atoms are 1e-10 m wide")
         for field in THICKNESSES
@@ -165,6 +168,24 @@ def _together(ends: Extremes) -> Iterator[Implausibility]:
     if depth > _STOCKY * span:
         reason = f"{depth:g} m is above a fifth of the span: shear matters (beam_model: timoshenko)"
         yield Implausibility("beam_depth", reason, False)
+    depths, spans = ends["beam_depth"], ends["beam_span"]
+    slowest, fastest = (
+        9.87
+        * depths[i]
+        / spans[1 - i] ** 2
+        * sqrt(ends["beam_youngs_modulus"][i] / ends["beam_density"][1 - i] / 12.0)
+        for i in (0, 1)
+    )
+    for field, ratio in (
+        ("mass_damping", 0.5 * ends["mass_damping"][1] / slowest),
+        ("stiffness_damping", 0.5 * ends["stiffness_damping"][1] * fastest),
+    ):
+        if ratio > _DAMPED:
+            reason = (
+                f"{ends[field][1]:g} {PARAMETERS[field].units} damps the first mode of a pinned "
+                f"beam by {ratio:.2g} of critical: metal structures have 0.001 to 0.05"
+            )
+            yield Implausibility(field, reason, False)
     if radius > 0.5 * span:
         reason = f"{radius:g} m makes the sphere wider than the span"
         yield Implausibility("sphere_radius", reason, False)

@@ -26,6 +26,7 @@ KINDS: dict[str, tuple[str, str]] = {
     "s": ("a time", "12 ms"),
     "s-1": ("a rate", "40.4 s-1"),
     "N m-1": ("a stiffness", "2 kN/mm"),
+    "N m-2": ("a stiffness per length", "5 N/mm2"),
     "N m": ("a rotational stiffness", "5 kN m"),
     "1": ("a pure number", "0.3"),
 }

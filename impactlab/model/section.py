@@ -21,14 +21,15 @@ import numpy as np
 
 from impactlab.model.checks import one_of, positive, require
 from impactlab.model.cross_section import Section
+from impactlab.model.laminate import LEAST_FIBRES, Laminate, layer_rows
 from impactlab.model.shapes import Box, Circle, ISection, Profile, Rectangle, Tube, profile_points
 from impactlab.solver import RULES
 from impactlab.solver import SHAPES as SHAPE_NAMES
-from impactlab.solver.types import PROFILE
+from impactlab.solver.types import LAYERS, PROFILE
 from impactlab.types import Floats
 
 SHAPES: dict[str, type[Section]] = dict(
-    zip(SHAPE_NAMES, (Rectangle, Box, Tube, Circle, ISection, Profile), strict=True)
+    zip(SHAPE_NAMES, (Rectangle, Box, Tube, Circle, ISection, Profile, Laminate), strict=True)
 )
 """Every shape of the section, by name."""
 THICKNESSES = ("wall_thickness", "flange_thickness", "web_thickness")
@@ -37,7 +38,7 @@ THICKNESSES = ("wall_thickness", "flange_thickness", "web_thickness")
 
 def section_fields(shape: str) -> list[str]:
     """Return the fields of `Beam` that a shape has."""
-    return [field.name for field in fields(SHAPES[shape])]
+    return [field.name for field in fields(SHAPES[shape]) if field.name != "skin"]
 
 
 def section_of(cases: Any) -> Section:
@@ -46,6 +47,10 @@ def section_of(cases: Any) -> Section:
     sizes = {name: cases[f"beam_{name}"] for name in section_fields(shape)}
     if "profile" in sizes:
         sizes["profile"] = sizes["profile"][: 1 + np.flatnonzero(sizes["profile"][:, 0])[-1]]
+    if "layers" in sizes:
+        sizes["layers"] = sizes["layers"][sizes["layers"][:, 0] > 0.0]
+        skin = (f"beam_{name}" for name in ("youngs_modulus", "yield_stress", "density"))
+        sizes["skin"] = tuple(float(cases[name]) for name in skin)
     return SHAPES[shape](**sizes)
 
 
@@ -58,12 +63,14 @@ def section_values(case: Any) -> dict[str, Any]:
 
 
 def fibre_table(cases: Any) -> Floats:
-    """Return the fibres above the axis that the kernels take, (cases, 2, most points // 2).
+    """Return the fibres above the axis that the kernels take, (cases, 3, most points // 2).
 
-    Of each case distances from the axis (m), outermost first, and areas (m2), twice a fibre's:
-    each stands for its mirror image, too. Cases of fewer points leave the end of their rows at 0.
+    Of each case distances from the axis (m), that which yields first first, areas (m2), twice a
+    fibre's: each stands for its mirror image, too; and the real strains over those of the kernels:
+    a fibre with r times the outermost one's yield strain is one at z/r with r^2 times the area
+    (laminate.py). Cases of fewer points leave the end of their rows at 0.
     """
-    table = np.zeros((cases.size, 2, cases["points"].max(initial=0) // 2))
+    table = np.zeros((cases.size, 3, cases["points"].max(initial=0) // 2))
     kinds = zip(*(cases[name].tolist() for name in ("beam_shape", "rule", "points")), strict=True)
     for shape, number, points in set(kinds):
         alike = (cases["rule"] == number) & (cases["points"] == points)
@@ -76,6 +83,13 @@ def fibre_table(cases: Any) -> Floats:
             z, area = (np.array(parts) for parts in zip(*pairs, strict=True))
         table[alike, 0, :half] = z[:, : -half - 1 : -1]
         table[alike, 1, :half] = 2.0 * area[:, : -half - 1 : -1]
+        table[alike, 2, :half] = 1.0
+        if SHAPES[SHAPE_NAMES[shape]] is Laminate:
+            for row in np.flatnonzero(alike):
+                z, area = table[row, :2, :half]
+                ratio = section_of(cases[row]).strain_ratio(z)
+                fibres = np.stack([z / ratio, area * ratio * ratio, ratio])
+                table[row, :, :half] = fibres[:, np.argsort(-fibres[0], kind="stable")]
     return table
 
 
@@ -107,6 +121,54 @@ def _profile_text(profile: Any, needed: bool) -> str | None:
     return ", ".join(f"{distance!r} {width!r}" for distance, width in points)
 
 
+def _layers_text(beam: Any, needed: bool) -> str | None:
+    """Return the layers of a laminate as text, a number having the digits that lead back to it.
+
+    Raises ValueError where they make no section, the shape needs none, or the metal of the outer
+    layer hardens or depends on the rate.
+    """
+    layers, example = beam.layers, "as '0.8 70e9 250e6 2700'"
+    if layers is None or not needed:
+        message = (
+            f"must be stated with shape: laminate, {example}"
+            if needed
+            else ("must be left out: the shape is no laminate")
+        )
+        require((layers is None) and not needed, "Beam", "layers", layers, message)
+        return None
+    try:
+        rows = layer_rows(layers)
+    except (TypeError, ValueError):
+        rows = ()
+    message = (
+        "must be rows of share of half the depth, Young's modulus (Pa), yield stress (Pa) and "
+        f"density (kg/m3), from the axis outwards, {example}"
+    )
+    require(1 <= len(rows) <= LAYERS, "Beam", "layers", layers, f"{message}, 1 to {LAYERS}")
+    sound = all(0.0 < value < np.inf for row in rows for value in row)
+    sound = sound and all(row[2] < row[1] for row in rows)
+    message = "must have numbers above zero, and yield stresses below Young's moduli"
+    require(sound, "Beam", "layers", layers, message)
+    message = "must leave a share to the outer layer, which is of the beam's material: shares sum "
+    message += f"up to {sum(row[0] for row in rows):.6g} of half the depth"
+    require(sum(row[0] for row in rows) < 1.0, "Beam", "layers", layers, message)
+    for field in ("isotropic_hardening_modulus", "kinematic_hardening_modulus"):
+        value = getattr(beam.material, field)
+        message = "must be 0 with shape: laminate, whose layers do not harden"
+        require(value == 0.0, "Material", field, value, message)
+    for field in ("rate_coefficient", "rate_sensitivity"):
+        value = getattr(beam.material, field)
+        message = "must be 0 with shape: laminate, whose layers do not depend on the strain rate"
+        require(value == 0.0, "Material", field, value, message)
+    return ", ".join(" ".join(map(repr, row)) for row in rows)
+
+
+def least_points(beam: Any) -> int:
+    """Return how many points over the depth the section of a beam needs; 0: any number."""
+    layers = layer_rows(beam.layers or ())
+    return 2 * LEAST_FIBRES * (len(layers) + 1) if layers else 0
+
+
 def check_section(beam: Any) -> None:
     """Raise ValueError unless shape and sizes make a section, one shape in all of a column."""
     one_of("Beam", "shape", beam.shape, tuple(SHAPES))
@@ -116,6 +178,7 @@ def check_section(beam: Any) -> None:
         object.__setattr__(beam, "shape", shapes[0])
     needed = section_fields(beam.shape)
     object.__setattr__(beam, "profile", _profile_text(beam.profile, "profile" in needed))
+    object.__setattr__(beam, "layers", _layers_text(beam, "layers" in needed))
     limits = {
         "wall_thickness": (0.5 * np.minimum(beam.width, beam.depth), "half of width and depth"),
         "flange_thickness": (0.5 * beam.depth, "half of the depth"),

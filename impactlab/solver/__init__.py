@@ -18,12 +18,14 @@ BEAM_MODELS = (
 """Names of the models of the beam; the index is the kernels' switch."""
 LUMPED_MODELS = BEAM_MODELS[4:]
 """Those that move as one mass."""
-SHAPES = ("rectangle", "box", "tube", "circle", "i", "profile")
+SHAPES = ("rectangle", "box", "tube", "circle", "i", "profile", "laminate")
 """Names of the shapes of the section (model/section.py); the index is the kernels' switch."""
 SUPPORTS = ("pinned", "clamped", "free", "elastic", "roller")
 """What holds an end of the beam; the index is the kernels' switch, in which a roller is pinned."""
 AXIAL_SUPPORTS = ("pinned", "clamped")
 """Supports that hold the axis."""
+RESISTANCES = ("mass_damping", "stiffness_damping", "damping_ratio", "foundation_stiffness")
+"""What resists the beam's motion beside bending: fields of beams and of the case table."""
 LOADS = ("point", "contact_patch")
 """Where the contact force acts on the beam; the index is the kernels' switch."""
 COMPLIANCES = ("half_space", "beam", "strip")

@@ -11,10 +11,13 @@ import numpy as np
 
 from impactlab.solver import (
     BEAM_MODELS,
+    RESISTANCES,
     euler_bernoulli,
     kink,
     lumped,
     modal,
+    resistance,
+    resisted_modes,
     responses,
     strip,
     timoshenko,
@@ -149,7 +152,9 @@ def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
             if lift is not None:
                 answer.permanent_indentation += lift(state, contact, 0.0)
             responses.read_rebound(answer, case, events)
-            responses.read_beam(answer, case, events, plastic.peeq, grid, dissipated)
+            responses.read_beam(
+                answer, case, events, plastic.peeq, section.strain_ratio, grid, dissipated
+            )
         return now
 
     return run
@@ -159,7 +164,8 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     """Return the kernel of a model of the beam.
 
     extended: with a load over the contact patch, strain rate, bending across the width, stress
-    beneath the contact and damping, which other kernels are free of, so that they compile sooner.
+    beneath the contact and damping of contact or beam, which other kernels are free of, so that
+    they compile sooner.
 
     It solves every case of R, by records and arrays of as many rows. cases: CASE records. fibres:
     as by model.section.fibre_table. table: of modes, by model.beam_modes, which all cases share, or
@@ -213,7 +219,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
                 rest_plastic_state(plastic, section)
                 keep_ends_elastic(plastic, grid)
                 if renew is not None:
-                    renew(extra, section, grid)
+                    renew(extra, case, section, grid)
                 else:
                     extra = make(case, section, grid)
                 state = State(pair, section, grid, beam, plastic, extra)
@@ -243,7 +249,7 @@ _LEAPFROG = {
     "spring_mass": _LUMPED,
     "rigid": _LUMPED,
 }
-_EXTENDED_EULER_BERNOULLI = _kernel("extended_euler_bernoulli", euler_bernoulli.MODEL, True)
+_EXTENDED_EULER_BERNOULLI = _kernel("extended_euler_bernoulli", resistance.MODEL, True)
 _EXTENDED = {
     "euler_bernoulli": _EXTENDED_EULER_BERNOULLI,
     "elastic": _EXTENDED_EULER_BERNOULLI,
@@ -252,7 +258,7 @@ _EXTENDED = {
     "spring_mass": _EXTENDED_LUMPED,
     "rigid": _EXTENDED_LUMPED,
 }
-_MODAL = (_kernel("modal", modal.MODEL), _kernel("extended_modal", modal.MODEL, True))
+_MODAL = (_kernel("modal", modal.MODEL), _kernel("extended_modal", resisted_modes.MODEL, True))
 
 
 def is_extended(cases: Array) -> Array:
@@ -260,6 +266,8 @@ def is_extended(cases: Array) -> Array:
     extended = (cases["load"] == CONTACT_PATCH) | (cases["beam_rate_coefficient"] > 0.0)
     extended |= cases["beam_rate_sensitivity"] > 0.0
     extended |= (cases["width_inertia"] > 0.0) | (cases["contact_prestress"] > 0)
+    for name in RESISTANCES:
+        extended |= cases[name] > 0.0
     for law in DAMPED:
         extended |= cases["contact"] == law
     return extended

@@ -141,7 +141,7 @@ def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Modes:
 
 
 @compiled
-def _renew(modes: Modes, section: FibreSection, grid: BeamGrid) -> None:
+def _renew(modes: Modes, case: Record, section: FibreSection, grid: BeamGrid) -> None:
     rest_modes(modes, grid, section.stiffness, section.yield_curvature)
 
 
@@ -205,11 +205,14 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
 
 
 @inlined
-def _begin_flight(modes: Modes, plastic: PlasticState, EI: float, grid: BeamGrid) -> None:
+def begin_flight(
+    modes: Modes, plastic: PlasticState, EI: float, grid: BeamGrid, unstressed: bool
+) -> None:
     """Bound the free motion from here on, and list the sections that could yield in it.
 
-    A simply supported beam at rest without a force has no moment: its curvature is M_0/EI. That of
-    others follows from the modes, and may be largest at an end.
+    unstressed: whether the beam at rest without a force has no moment, as one that is simply
+    supported: then its curvature is M_0/EI. That of others follows from the modes, and may be
+    largest at an end.
     """
     leaps = modes.leaps
     swing, watched = leaps.swing, leaps.watched
@@ -228,7 +231,7 @@ def _begin_flight(modes: Modes, plastic: PlasticState, EI: float, grid: BeamGrid
     watched[0] = 0
     sines = modes.table.size == 0
     for i in range(2, grid.last + 1):
-        kappa = plastic.M_0[i] / EI if sines else mode_curvature(leaps.rest, modes.bent, i)
+        kappa = plastic.M_0[i] / EI if unstressed else mode_curvature(leaps.rest, modes.bent, i)
         left = min(plastic.kappa_max[i] - kappa, kappa - plastic.kappa_min[i])
         most = (i - 1) * grid.dx * swing[MOST_SLOPE] if sines else swing[MOST_KAPPA]
         if min(swing[MOST_KAPPA], most) < left:
@@ -278,7 +281,8 @@ def _leap(
         memory[WAIT] -= 1
         return 0
     if memory[FRESH] == 0:
-        _begin_flight(modes, state.plastic, state.section.stiffness, state.grid)
+        sines = modes.table.size == 0
+        begin_flight(modes, state.plastic, state.section.stiffness, state.grid, sines)
     w = beam.w[now, mid]
     first = memory[LEVEL]
     for level in range(first, LEAST - 1, -1):
@@ -349,6 +353,7 @@ def _largest(state: State, w_max: float) -> float:
     return largest_deflection(state.extra.leaps, state.extra.D, w_max)
 
 
+FLIGHT = Flight(_leap, _retrace, _largest)
 MODEL = BeamModel(
     _make,
     _step,
@@ -357,7 +362,7 @@ MODEL = BeamModel(
     _deflect,
     _spread,
     flight_stride=64,
-    flight=Flight(_leap, _retrace, _largest),
+    flight=FLIGHT,
     renew=_renew,
     take=take_modes,
     settle=_settle,

@@ -38,6 +38,7 @@ STRUCK_NEAR_END = 256
 # What the beam model lacks under the sphere, by shape of the section.
 WALL_MAY_DENT = 512
 ROUND_TOP = 1024
+SKIN_MAY_GIVE = 4096
 # The axial force of ends that hold the axis, in other models than von_karman.
 STRETCHING_LEFT_OUT = 2048
 

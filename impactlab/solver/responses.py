@@ -40,6 +40,7 @@ from impactlab.solver.outputs import (
     OUTSIDE_CONTACT_LAW,
     POISSONS_RATIO_OUTSIDE_DATA,
     ROUND_TOP,
+    SKIN_MAY_GIVE,
     SPHERE_NOT_LEAVING,
     SPHERE_YIELD_OUTSIDE_DATA,
     STIFFNESS_RATIO_OUTSIDE_DATA,
@@ -48,13 +49,23 @@ from impactlab.solver.outputs import (
     WALL_MAY_DENT,
     YIELD_RATIO_OUTSIDE_DATA,
 )
-from impactlab.solver.types import CIRCLE, RECTANGLE, TUBE, VON_KARMAN, Array, Record
+from impactlab.solver.types import (
+    CIRCLE,
+    LAMINATE,
+    RECTANGLE,
+    TUBE,
+    VON_KARMAN,
+    Array,
+    Record,
+)
 
 PLASTIC_ZONE_STRAIN = 1e-5
 """PEEQ from which on a section counts as plastic."""
 LARGEST_COMPLIANCE = 0.5
 """Of the contact, over that of its law, taken back by the bodies' ends: beyond it the circle is not
 small beside them."""
+LARGEST_CIRCLE_ON_SKIN = 0.2
+"""Radius of the contact over the outer layer's thickness: beyond it the layer beneath matters."""
 _FINITE_ELEMENT = LAWS.index("finite_element")
 LARGEST_STRETCHING = 0.02
 """Share of the largest deflection from which on a beam's stretching is not left out tacitly."""
@@ -112,6 +123,7 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
         answer.remarks |= STRUCK_NEAR_END
     read_shape(answer, case.beam_shape)
     S_y = yield_stress(contact, pair)
+    read_skin(answer, case.skin_thickness, contact, pair)
     corrected = case.contact_prestress > 0 or case.width_inertia > 0.0
     if corrected or pair.compliance != 0.0:
         a = radius(pair.law, contact.delta_m, pair.E, pair.R, S_y, pair.nu)
@@ -139,7 +151,7 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
 @compiled
 def read_shape(answer: Record, shape: int) -> None:
     """Remark what the beam lacks under the sphere; shape: its number."""
-    if shape not in (RECTANGLE, CIRCLE):
+    if shape not in (RECTANGLE, CIRCLE, LAMINATE):
         answer.remarks |= WALL_MAY_DENT
     if shape in (CIRCLE, TUBE):
         answer.remarks |= ROUND_TOP
@@ -198,6 +210,16 @@ def read_strike(
 
 
 @compiled
+def read_skin(answer: Record, thickness: float, contact: Record, pair: Pair) -> None:
+    """Remark a contact that is not small beside the outer layer; thickness: its (m), 0: none."""
+    if thickness > 0.0:
+        S_y = yield_stress(contact, pair)
+        a = radius(pair.law, contact.delta_m, pair.E, pair.R, S_y, pair.nu)
+        if a > LARGEST_CIRCLE_ON_SKIN * thickness:
+            answer.remarks |= SKIN_MAY_GIVE
+
+
+@compiled
 def read_rebound(answer: Record, case: Record, events: Record) -> None:
     """Fill in the rebound, once the sphere moves upwards and away from the beam."""
     if not sphere_leaves(events):
@@ -209,9 +231,15 @@ def read_rebound(answer: Record, case: Record, events: Record) -> None:
 
 @compiled
 def read_beam(
-    answer: Record, case: Record, events: Record, peeq: Array, grid: BeamGrid, dissipated: float
+    answer: Record,
+    case: Record,
+    events: Record,
+    peeq: Array,
+    ratio: Array,
+    grid: BeamGrid,
+    dissipated: float,
 ) -> None:
-    """Fill in deflection and plastic strain; peeq: see PlasticState."""
+    """Fill in deflection and plastic strain; peeq: see PlasticState; ratio: of strains."""
     if events.w > events.w_max:
         answer.status |= DEFLECTION_STILL_GROWING
     else:
@@ -219,12 +247,12 @@ def read_beam(
         stretches = case.beam_model == VON_KARMAN
         if not stretches and stretching(case, events.w_max) > LARGEST_STRETCHING:
             answer.remarks |= STRETCHING_LEFT_OUT
-    answer.peak_plastic_strain = max(_largest(peeq, 1), _largest(peeq, grid.last + 1))
+    answer.peak_plastic_strain = max(_largest(peeq, ratio, 1), _largest(peeq, ratio, grid.last + 1))
     answer.remote_plastic_strain = 0.0
     answer.plastic_zone_length = 0.0
-    strain_before = _largest(peeq, 1)
+    strain_before = _largest(peeq, ratio, 1)
     for i in range(2, grid.last + 1):
-        strain = _largest(peeq, i)
+        strain = _largest(peeq, ratio, i)
         answer.peak_plastic_strain = max(answer.peak_plastic_strain, strain)
         if abs(grid.mid - i) * grid.dx > case.beam_depth:
             answer.remote_plastic_strain = max(answer.remote_plastic_strain, strain)
@@ -233,17 +261,19 @@ def read_beam(
             answer.plastic_zone_length += grid.copies * grid.dx * share
         strain_before = strain
     if grid.stop > grid.last:  # pinned
-        share = share_above(strain_before, _largest(peeq, grid.last + 1), PLASTIC_ZONE_STRAIN)
+        share = share_above(
+            strain_before, _largest(peeq, ratio, grid.last + 1), PLASTIC_ZONE_STRAIN
+        )
         answer.plastic_zone_length += grid.dx * share
     answer.plastic_dissipation = dissipated
 
 
 @compiled
-def _largest(peeq: Array, i: int) -> float:
+def _largest(peeq: Array, ratio: Array, i: int) -> float:
     """Return the largest strain of the fibres of section i."""
     strain = 0.0
     for j in range(peeq.shape[1]):
-        strain = max(strain, peeq[i, j])
+        strain = max(strain, ratio[j] * peeq[i, j])
     return strain
 
 

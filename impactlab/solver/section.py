@@ -45,7 +45,8 @@ class FibreSection(NamedTuple):
     z: distance from the axis, m, outermost first; area: twice the fibre's, m2, for its mirror image
     (both by model/section.py); lever: E area z, N m; each of shape (P // 2,). stiffness: (EI)_q =
     sum(E area z^2), N m2, the rule's own. yield_curvature: where the outermost fibre first yields,
-    1/m. rate: see strain_rate.py; None in the kernels without it.
+    1/m. rate: see strain_rate.py; None in the kernels without it. strain_ratio: real strains of a
+    fibre over those here (model/section.py), (P // 2,).
     """
 
     z: Array
@@ -55,21 +56,23 @@ class FibreSection(NamedTuple):
     yield_curvature: float
     moduli: Moduli
     rate: RateLaw | None
+    strain_ratio: Array
 
 
 class Room(NamedTuple):
-    """Room for the section of a run: z, area and lever, see FibreSection."""
+    """Room for the section of a run: z, area, lever and strain_ratio, see FibreSection."""
 
     z: Array
     area: Array
     lever: Array
+    strain_ratio: Array
 
 
 @allocating
 def make_room(case: Record) -> Room:
     """Return room for the section of a case."""
     half = case.points // 2
-    return Room(np.empty(half), np.empty(half), np.empty(half))
+    return Room(np.empty(half), np.empty(half), np.empty(half), np.empty(half))
 
 
 @allocating
@@ -81,9 +84,9 @@ def make_section(case: Record, fibres: Array) -> FibreSection:
 @allocating
 def cut_section(case: Record, fibres: Array, room: Room) -> FibreSection:
     """Return the section of a case in a room; fibres: see make_section."""
-    E, stiffness, (z, area, lever) = case.beam_youngs_modulus, 0.0, room
+    E, stiffness, (z, area, lever, strain_ratio) = case.beam_youngs_modulus, 0.0, room
     for j in range(z.size):
-        z[j], area[j] = fibres[0, j], fibres[1, j]
+        z[j], area[j], strain_ratio[j] = fibres[0, j], fibres[1, j], fibres[2, j]
         lever[j] = E * area[j] * z[j]
         stiffness += E * area[j] * z[j] * z[j]
     return FibreSection(
@@ -94,6 +97,7 @@ def cut_section(case: Record, fibres: Array, room: Room) -> FibreSection:
         FAR if case.beam_model == ELASTIC else case.beam_yield_stress / (E * z[0]),
         _moduli(case),
         None,
+        strain_ratio,
     )
 
 
@@ -110,7 +114,8 @@ def _moduli(case: Record) -> Moduli:
 @allocating
 def make_whole_room(case: Record) -> Room:
     """Return room for all fibres of the section of a case."""
-    return Room(np.empty(case.points), np.empty(case.points), np.empty(case.points))
+    P = case.points
+    return Room(np.empty(P), np.empty(P), np.empty(P), np.ones(P))
 
 
 @allocating
@@ -119,7 +124,7 @@ def cut_whole_section(case: Record, fibres: Array, room: Room) -> FibreSection:
 
     None counts twice. A fibre on the axis has the area that the others leave of the section.
     """
-    E, stiffness, (z, area, lever) = case.beam_youngs_modulus, 0.0, room
+    E, stiffness, (z, area, lever, ratio) = case.beam_youngs_modulus, 0.0, room
     points, half = z.size, z.size // 2
     rest = case.mass_per_length / case.beam_density
     for j in range(half):
@@ -133,7 +138,7 @@ def cut_whole_section(case: Record, fibres: Array, room: Room) -> FibreSection:
     for j in range(points):
         lever[j] = E * area[j] * z[j]
     yields = case.beam_yield_stress / (E * z[0])
-    return FibreSection(z, area, lever, stiffness, yields, _moduli(case), rate_law(case))
+    return FibreSection(z, area, lever, stiffness, yields, _moduli(case), rate_law(case), ratio)
 
 
 @allocating
@@ -147,6 +152,7 @@ def with_rate(section: FibreSection, case: Record) -> FibreSection:
         section.yield_curvature,
         section.moduli,
         rate_law(case),
+        section.strain_ratio,
     )
 
 

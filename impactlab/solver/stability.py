@@ -5,7 +5,8 @@ Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
                       (physics.md, in the place of the paper's bar-wave limit), at all ends: of the
                       row sums of the curvatures' matrix, a free or clamped end's are smaller; a
                       free end that is struck has half the mass in the second term; the stiffest
-                      spring of an elastic end adds 2 k_t/(rho A dx)
+                      spring of an elastic end adds 2 k_t/(rho A dx),
+                      and a foundation k/(rho A)
     Timoshenko beam   4 (EI)_q/(rho I dx^2) + k G A/(rho I) + 4 k G A/(rho A dx^2) as first term
                       with any ends, too
     von Karman's      4 (1 + s^2) E/(rho dx^2) beside the first term, of stretching under the slope
@@ -24,7 +25,9 @@ indentations show.
 
 A damper c of the contact (N s/m) counts as 4 c/dt beside k_c (contact_damping.py). With h, a half
 (modal: the whole) of c dt times what k_c is multiplied by, this makes the largest dt smaller by
-sqrt(1 + h^2) - h.
+sqrt(1 + h^2) - h. Leapfrog's lagging damping beta of the bending stiffness (resistance.py) adds
+beta omega^2 dt/4 to h, of the first term, with which dt^2 omega^2 + 2 beta dt omega^2 <= 4; damping
+of the mass, which is central, and that of modes (resisted_modes.py) change nothing.
 """
 
 from __future__ import annotations
@@ -190,8 +193,10 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
         if case.beam_model == VON_KARMAN:
             wave_squared = case.beam_youngs_modulus / case.beam_density
             omega_squared += 4.0 * (1.0 + LARGEST_SLOPE**2) * wave_squared / dx**2
+        omega_squared += case.foundation_stiffness / mu
     dt = 2.0 / math.sqrt(omega_squared + contact)
-    return _damped(dt, 0.5 * c * contact / k_c * dt)
+    lag = 0.25 * case.stiffness_damping * omega_squared * dt
+    return _damped(dt, 0.5 * c * contact / k_c * dt + lag)
 
 
 @compiled

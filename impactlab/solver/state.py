@@ -42,9 +42,9 @@ class Flight(NamedTuple):
 class BeamModel(NamedTuple):
     """A model of the beam in one scheme: compiled functions, from which kernels.py makes a kernel.
 
-    make(case, section, grid): State.extra at rest. renew(extra, section, grid): put it back to
-    rest, for another case of as many nodes; None: `make` does. take(extra, table): hand on a table
-    of modes made outside, if any. step(state, now, F): move the beam
+    make(case, section, grid): State.extra at rest. renew(extra, case, section, grid): put it
+    back to rest, for another case of as many nodes; None: `make` does. take(extra, table): hand on
+    a table of modes made outside, if any. step(state, now, F): move the beam
     under the contact force F (N). curvature(state, now): at mid-span, 1/m. energy(state, now, F,
     u_mid): the beam's in J, plastic strains' included, after a step, at its beginning; u_mid: u at
     mid-span before it (m). deflect(state, now): set all of beam.w[now] in the end. spread(state,

@@ -31,6 +31,7 @@ MODAL = SCHEMES.index("modal")
 RECTANGLE = SHAPES.index("rectangle")
 CIRCLE = SHAPES.index("circle")
 TUBE = SHAPES.index("tube")
+LAMINATE = SHAPES.index("laminate")
 CONTACT_PATCH = LOADS.index("contact_patch")
 
 
@@ -40,6 +41,8 @@ def record(real: str, integers: str = "") -> np.dtype[Any]:
     return np.dtype((np.record, fields))
 
 
+LAYERS = 8
+"""Most layers of a laminate that a case holds, beside the outer one."""
 PROFILE = 16
 """Most points of the width over the depth that a case holds."""
 CASE = record(
@@ -49,25 +52,33 @@ CASE = record(
     beam_span beam_width beam_depth beam_wall_thickness beam_flange_thickness beam_web_thickness
     shear_coefficient
     mass_per_length rotary_inertia shear_stiffness stress_per_moment plastic_modulus
+    skin_thickness
     beam_density beam_youngs_modulus beam_poissons_ratio beam_yield_stress
     beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus
     beam_rate_coefficient beam_rate_exponent beam_rate_sensitivity beam_reference_rate courant
     strike_position
     stiffness_left stiffness_right rotational_stiffness_left rotational_stiffness_right
+    mass_damping stiffness_damping damping_ratio foundation_stiffness
     compliance bending_compliance stress_along stress_across
     width_stiffness width_inertia width_lever width_twist axis_compliance axis_bending
     """,
     integers="contact beam_model load contact_prestress support_left support_right"
     " axis_held_left axis_held_right beam_shape nodes points rule scheme strikes",
 )
-CASE = np.dtype((np.record, [*CASE.descr, ("beam_profile", float, (PROFILE, 2))]))
+CASE = np.dtype(
+    (
+        np.record,
+        [*CASE.descr, ("beam_profile", float, (PROFILE, 2)), ("beam_layers", float, (LAYERS, 4))],
+    )
+)
 """Record type of the case table: one record per run, everything the kernels need to know of it.
 
 The fields are the parameters of model/parameters.py, in SI, with contact law, beam model, load,
 supports, shape, rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS,
 SUPPORTS, SHAPES, RULES and SCHEMES), the sphere's mass and the shear coefficient resolved,
-thicknesses that the shape does not have as 0, and the points of a profile, (PROFILE, 2), 0 after
-the last; the duration in s; whether supports hold the axis; and what follows from them: of the
-section (model/section.py) rho A, rho I, k G A, the stress in the outermost fibre over the bending
-moment and the plastic modulus, and of contact and strip those of model/contact_compliance.py.
+thicknesses that the shape does not have as 0, the points of a profile, (PROFILE, 2), and the rows
+of layers, (LAYERS, 4), 0 after the last; the duration in s; whether supports hold the axis; and
+what follows from them: of the section (model/section.py) rho A, rho I, k G A, the stress in the
+outermost fibre over the bending moment, the plastic modulus and the thickness of the outer layer,
+and of contact and strip those of model/contact_compliance.py.
 """

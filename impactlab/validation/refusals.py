@@ -88,6 +88,8 @@ def _section_around(name: str, value: Value) -> dict[str, Value]:
     sizes: dict[str, Value] = dict.fromkeys(("beam_width", "beam_depth"), 1e299)
     if shape[name] == "profile":
         sizes["beam_profile"] = "0 1, 1 1"
+    if shape[name] == "laminate":
+        sizes["beam_layers"] = "0.5 1 0.1 1"
     thin = (f"beam_{field}" for field in section_fields(shape[name]) if field in THICKNESSES)
     sizes |= dict.fromkeys(thin, 1e-300) | {"beam_shape": shape[name]}
     return {field: size for field, size in sizes.items() if field != name}

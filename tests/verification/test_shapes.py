@@ -59,6 +59,7 @@ def test_energy_balances_and_remarks_say_what_the_beam_lacks(shape, model):
     meanings = run.remarks.attrs["flag_meanings"].split()
     bits = zip(meanings, run.remarks.attrs["flag_masks"], strict=True)
     expected = {"wall_may_dent": ("box", "tube", "i", "profile"), "round_top": ("tube", "circle")}
+    expected |= {"skin_may_give": ("laminate",)}
     assert {name for name, bit in bits if int(run.remarks) & bit} == {
         name for name, shapes in expected.items() if shape in shapes
     }

@@ -15,6 +15,7 @@ from impactlab.fem3d.solver.frames import FRAMES, Frames
 from impactlab.fem3d.solver.march import Energies, History, March, Progress
 from impactlab.fem3d.solver.mesh import Mesh, check_mesh, quarter_mesh
 from impactlab.fem3d.solver.system import System, ThreadPool
+from impactlab.model.bodies import RESISTANCES
 from impactlab.model.checks import integer, positive
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
@@ -122,7 +123,7 @@ IMPACT_PARAMETERS = [
     for name, entry in PARAMETERS.items()
     if entry.path[0] == "impact"
     and name not in ("contact", *TIMOSHENKO_OPTIONS, "beam_model", "load", "shear_coefficient")
-    and name not in ("strike_position", "support_left", "support_right", *SECTION)
+    and name not in ("strike_position", "support_left", "support_right", *SECTION, *RESISTANCES)
     and "stiffness_" not in name
 ]
 """Parameters of an impact, without those of the beam models alone."""

@@ -19,6 +19,7 @@ from scipy.optimize import brentq
 
 from impactlab.fem3d.solver.estimates import checked_patch, checked_size, uniform
 from impactlab.fem3d.solver.impulses import bulges
+from impactlab.model.bodies import RESISTANCES
 from impactlab.model.checks import positive
 from impactlab.model.impact import HINGES, MID_SPAN, Impact
 from impactlab.types import Floats
@@ -136,16 +137,20 @@ def plane_faces(
 
 def _refuse_other_beams(impact: Impact) -> None:
     """Raise ValueError unless the beam is a pinned rectangular one with both planes of symmetry."""
-    for owner, field, plain, *others in (
-        (impact.beam, "shape", "rectangle"),
-        (impact.beam, "support_left", *HINGES),
-        (impact.beam, "support_right", *HINGES),
-        (impact, "strike_position", MID_SPAN),
-    ):
-        if (value := getattr(owner, field)) not in (plain, *others):
+    beam = impact.beam
+    plain_values: list[tuple[Any, str, tuple[Any, ...]]] = [
+        (beam, "shape", ("rectangle",)),
+        (beam, "support_left", HINGES),
+        (beam, "support_right", HINGES),
+        (impact, "strike_position", (MID_SPAN,)),
+        *((beam, field, (0.0,)) for field in RESISTANCES),
+    ]
+    for owner, field, plain in plain_values:
+        if (value := getattr(owner, field)) not in plain:
             raise ValueError(
                 f"{type(owner).__name__}.{field} = {value!r}: the 3-D model is a quarter of a "
-                f"rectangular pinned beam struck at mid-span: set it to {plain!r}"
+                "rectangular pinned beam without damping or foundation, struck at mid-span: set it "
+                f"to {plain[0]!r}"
             )
 
 

@@ -14,13 +14,19 @@ from impactlab.methods.distributions import Choice, Distribution
 from impactlab.methods.grid import Grid
 from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
-from impactlab.model.case_table import between_nodes
+from impactlab.model.case_table import MODAL_DAMPING, between_nodes
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
-from impactlab.model.impact import HINGES, MID_SPAN, OTHER_BEAM, SPRUNG_BEAM
+from impactlab.model.impact import (
+    HINGES,
+    MID_SPAN,
+    OTHER_BEAM,
+    RESISTED_BEAM,
+    SPRUNG_BEAM,
+)
 from impactlab.model.parameters import PARAMETERS, SECTION, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.model.quantities import shown
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS, WAVE_MODELS
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS, RESISTANCES, WAVE_MODELS
 from impactlab.study.schema.declarations import FunctionStudy, ImpactStudy, StudyFile
 from impactlab.validation.errors import unknown
 from impactlab.validation.refusals import Base, refused_corner
@@ -163,7 +169,8 @@ def _impacts(file: StudyFile) -> Reasons:
             shown(key, value, PARAMETERS[key].units) for key, value in refused.values.items()
         )
         yield f"sampling.parameters.{name}", f"{values}: {refused.name} {refused.reason}"
-    for problem in implausibilities(extremes((file.impact, grid), sampling)):
+    ends = extremes((file.impact, grid), sampling)
+    for problem in implausibilities(ends):
         if problem.impossible:
             yield key_of(problem.name, sampling), problem.reason
     models = values_of(sampling, "beam_model", file.impact.beam_model)
@@ -176,6 +183,7 @@ def _impacts(file: StudyFile) -> Reasons:
         )
         yield key_of("scheme", sampling), reason
     yield from _other_beams(file, set(models))
+    yield from _resisted_beams(file, ends)
     lumped = [name for name in LUMPED_MODELS if name in models]
     if lumped and "contact_patch" in values_of(sampling, "load", file.impact.load):
         reason = f"contact_patch is not for {lumped[0]}, which moves as one mass: set load: point"
@@ -214,6 +222,18 @@ def _other_beams(file: StudyFile, models: set[Value]) -> Reasons:
         yield key_of("beam_model", sampling), reason
     elif "elastic" in supports and models - set(BENDING_MODELS):
         yield key_of("beam_model", sampling), f"must be {SPRUNG_BEAM}"
+
+
+def _resisted_beams(file: StudyFile, ends: Extremes) -> Reasons:
+    """Check that what resists the motion of a beam has a model and a scheme."""
+    sampling, grid = file.sampling, file.discretisation[0]
+    resisted = any(ends[name][1] > 0.0 for name in RESISTANCES)
+    models = set(values_of(sampling, "beam_model", file.impact.beam_model))
+    if resisted and models - set(BENDING_MODELS):
+        yield key_of("beam_model", sampling), f"must be {RESISTED_BEAM}"
+    schemes = values_of(sampling, "scheme", grid.scheme)
+    if ends["damping_ratio"][1] > 0.0 and "leapfrog" in schemes:
+        yield key_of("damping_ratio", sampling), MODAL_DAMPING
 
 
 def _further_models(file: StudyFile) -> Reasons:

@@ -32,6 +32,7 @@ PAPER: dict[str, Any] = {
     "stiffness_right": 0.0,
     "rotational_stiffness_left": 0.0,
     "rotational_stiffness_right": 0.0,
+    "stiffness_damping": 0.0,
     "strike_position": 0.5,
     "axis_held_left": 1,
     "axis_held_right": 1,

@@ -25,11 +25,14 @@ OTHER_COUNTS = {"nodes": 55, "points": 6}
 STATED = {"sphere_mass": 2.5, "element_size": 2e-3, "elements_per_radius": 3.0}
 STATED |= {"shear_coefficient": 0.7, "beam_wall_thickness": 3e-3}
 STATED |= {"beam_profile": "0.0 0.5, 1.0 1.0"}
+STATED |= {"beam_layers": "0.5 70000000000.0 200000000.0 2700.0"}
 STATED |= {"beam_flange_thickness": 3e-3, "beam_web_thickness": 1e-3}
 """What the base leaves open."""
 HARDENING = {"beam_isotropic_hardening_modulus": 2e9, "beam_kinematic_hardening_modulus": 3e9}
 HARDENING |= {"beam_rate_coefficient": 40.4, "beam_rate_exponent": 4.0}
 HARDENING |= {"beam_rate_sensitivity": 0.02, "beam_reference_rate": 2.0}
+HARDENING |= {"mass_damping": 9.0, "stiffness_damping": 1e-6, "damping_ratio": 0.01}
+HARDENING |= {"foundation_stiffness": 1e6}
 HARDENING |= {
     f"{kind}stiffness_{side}": 1e6 for kind in ("", "rotational_") for side in ("left", "right")
 }
@@ -45,7 +48,8 @@ OTHERS = {name: another(name) for name in PARAMETERS}
 TOGETHER = {
     name: value
     for name, value in OTHERS.items()
-    if name not in ("elements_per_radius", "beam_profile") and "thickness" not in name
+    if name not in ("elements_per_radius", "beam_profile", "beam_layers")
+    and "thickness" not in name
 } | {"beam_shape": "rectangle"}
 TOGETHER["beam_rate_sensitivity"] = 0.0
 """Without what contradicts another."""
@@ -88,8 +92,9 @@ def test_the_table_has_every_field_once():
 @pytest.mark.parametrize("name", PARAMETERS)
 def test_one_value_changes_its_own_field_alone(name):
     base = BASE
-    if name == "beam_profile":
-        base = with_values(*BASE, parameters_of("profile"))
+    if name in ("beam_profile", "beam_layers"):
+        shape = "profile" if name == "beam_profile" else "laminate"
+        base = with_values(*BASE, parameters_of(shape))
     if "shape" in name or "thickness" in name:
         shape = "i" if name in ("beam_flange_thickness", "beam_web_thickness") else "box"
         base = with_values(*BASE, parameters_of(shape) | {"beam_width": 0.03})

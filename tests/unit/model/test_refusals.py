@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import impactlab as il
+from impactlab.solver import RESISTANCES
 
 IMPACT = il.paper_impact()
 PARTS = {
@@ -41,6 +42,7 @@ REFUSED = {
     ("Beam", "wall_thickness"): [0, -1.0, NAN, INFINITE, "1 A", True, 1e-3],
     ("Beam", "flange_thickness"): [0, -1.0, NAN, INFINITE, "1 A", True, 1e-3],
     ("Beam", "web_thickness"): [0, -1.0, NAN, INFINITE, "1 A", True, 1e-3],
+    ("Beam", "layers"): ["0.5 2 1 1", [(0.5, 2, 1, 1)], "", 5],
     ("Beam", "profile"): ["0 1, 1 1", [(0, 1), (1, 1)], "", 5],
     ("Beam", "support_left"): ["roller", "Pinned", "", None, 0],
     ("Beam", "support_right"): ["fixed", "Clamped", "", None, 1],
@@ -49,6 +51,7 @@ REFUSED = {
         for kind in ("", "rotational_")
         for side in ("left", "right")
     },
+    **{("Beam", field): NEGATIVE for field in RESISTANCES},
     ("Impact", "velocity"): UNREAL,
     ("Impact", "gravity"): NEGATIVE,
     ("Impact", "contact"): ["hooke", "Hertz", "", None, 0],

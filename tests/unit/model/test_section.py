@@ -65,7 +65,7 @@ def test_kernels_get_the_fibres_above_the_axis_twice_outermost_first():
     varied["beam_depth"] = [0.02, 0.03, 0.04]
     cases = case_table(il.paper_impact(), il.Discretisation(), duration=1e-3, varied=varied)
     table = fibre_table(cases)
-    assert table.shape == (3, 2, 4)
+    assert table.shape == (3, 3, 4)
     for case, row, rule in zip(cases, table, varied["rule"], strict=True):
         z, area = section_of(case).fibres(*quadrature.rule(rule, int(case.points)))
         half = case.points // 2

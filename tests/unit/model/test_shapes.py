@@ -61,6 +61,8 @@ def test_properties_are_integrals_of_the_width(shape):
 def test_fibres_have_area_stiffness_and_plastic_moment_exactly(shape, rule, points):
     """Layers have the stiffness to the second order."""
     section = beam_of(shape).section
+    if shape == "laminate" and points < 8:
+        pytest.skip("each of two layers needs two fibres above the axis")
     z, area = section.cut(rule, points)
     assert z.shape == area.shape == (points,)
     np.testing.assert_array_equal(z, -z[::-1])
@@ -76,7 +78,8 @@ def test_fibres_have_area_stiffness_and_plastic_moment_exactly(shape, rule, poin
         assert 0 < error * (points // 2) ** 2 < 0.4
     else:
         assert abs(error) < 1e-13
-        highest = 2 * (points // 2) - (1 if rule == "legendre" else 2)
+        fibres = 2 if shape == "laminate" else points // 2  # of the layer with the fewest
+        highest = 2 * fibres - (1 if rule == "legendre" else 2)
         for power in range(3, min(highest, 9) + 1):
             exact = integral(shape, lambda z, k=power: (z / 0.015) ** k)
             assert area @ abs(z / 0.015) ** power == pytest.approx(exact, rel=1e-11)
@@ -208,7 +211,9 @@ def test_what_is_of_rectangles_refuses_other_shapes(shape, varied, message):
 
 
 def test_shapes_in_columns_give_the_table_of_single_runs_bit_by_bit():
-    rows = [parameters_of(shape) for shape in (*SIZES, "box") if shape != "profile"]
+    rows = [
+        parameters_of(shape) for shape in (*SIZES, "box") if shape not in ("profile", "laminate")
+    ]
     names = {name for row in rows for name in row}
     varied = {name: [row.get(name) for row in rows] for name in sorted(names)}
     base = il.paper_impact(), il.Discretisation()

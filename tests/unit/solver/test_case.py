@@ -23,7 +23,7 @@ OF_SECTION = {
 DERIVED = (
     *("compliance", "bending_compliance", "axis_compliance", "axis_bending"),
     *("width_stiffness", "width_inertia", "width_lever", "width_twist"),
-    *("stress_along", "stress_across"),
+    *("stress_along", "stress_across", "skin_thickness"),
     *("axis_held_left", "axis_held_right"),
 )
 
@@ -41,7 +41,7 @@ def test_a_record_has_every_value_in_its_place(make_case):
         if not entry.choices and not entry.is_integer and "poisson" not in name
         if name not in THICKNESSES and not entry.any_word
     }
-    ratios = {"sphere_poissons_ratio": 0.1, "beam_poissons_ratio": 0.2}
+    ratios = {"sphere_poissons_ratio": 0.1, "beam_poissons_ratio": 0.2, "damping_ratio": 0.0}
     moduli = {"sphere_youngs_modulus": 1e9, "beam_youngs_modulus": 2e9, "beam_span": 9.0}
     moduli |= {"beam_rate_exponent": 4.0, "beam_rate_sensitivity": 0.0}
     values = numbers | ratios | moduli | {"nodes": 19, "points": 3, "strike_position": 5 / 18}
@@ -59,8 +59,9 @@ def test_a_record_has_every_value_in_its_place(make_case):
     }
     expected = values | numbers_of_names | {"duration": 0.7}
     expected |= dict.fromkeys((*DERIVED, *THICKNESSES), 0.0) | {"axis_held_left": 1}
-    assert not case["beam_profile"].any()
-    names = {*CASE.names} - {*OF_SECTION, "beam_profile"}
+    lists = {"beam_profile", "beam_layers"}
+    assert not any(case[name].any() for name in lists)
+    names = {*CASE.names} - {*OF_SECTION} - lists
     assert {name: case[name] for name in names} == expected
     beam = [values[f"beam_{name}"] for name in ("density", "youngs_modulus", "poissons_ratio")]
     sizes = [values[name] for name in ("beam_width", "beam_depth", "shear_coefficient")]

@@ -74,7 +74,7 @@ def test_a_pause_below_a_twentieth_does_not_end_the_first_contact(pause, duratio
 def read_everything(answer, case, events, contact, peeq):
     read_contact(answer, events, contact, make_pair(case))
     read_rebound(answer, case, events)
-    read_beam(answer, case, events, peeq, GRID, 0.7)
+    read_beam(answer, case, events, peeq, np.ones(2), GRID, 0.7)
 
 
 @pytest.fixture
