@@ -13,7 +13,11 @@ from impactlab.model.beam_modes import mode_table
 from impactlab.model.case_table import case_table
 from impactlab.solve import fibre_section
 from impactlab.solver import resisted_modes
+from impactlab.solver.beam import copies
 from impactlab.solver.contact.history import make_pair
+from impactlab.solver.fibre_plasticity import make_plastic_state
+from impactlab.solver.modal import begin_flight
+from impactlab.solver.modes import add_moment
 from impactlab.solver.stability import discretise
 
 from ..end_modes import roots
@@ -110,7 +114,7 @@ def test_a_turning_beam_on_an_elastic_stop_is_as_published(stiffness):
 @pytest.mark.parametrize("scheme", ["leapfrog", "modal"])
 @pytest.mark.parametrize(("model", "velocity"), [("elastic", 1.0), ("euler_bernoulli", 10.0)])
 def test_the_balance_of_energy_counts_what_damping_takes(model, velocity, scheme, ends, load):
-    """The error is that of an undamped run, though damping takes much."""
+    """The error is no more than that of an undamped run, though damping takes much."""
     grid = il.Discretisation(nodes=65, points=9, scheme=scheme)
     runs = [
         il.simulate(resisted(velocity, model, load, 0.035, **values, **ends), grid, duration=4e-3)
@@ -119,7 +123,8 @@ def test_the_balance_of_energy_counts_what_damping_takes(model, velocity, scheme
             {"mass_damping": 200.0, "stiffness_damping": 2e-5, "foundation_stiffness": 1e7},
         )
     ]
-    assert runs[1].energy_error.item() < max(2.0 * runs[0].energy_error.item(), 1e-6)
+    limit = 1e-6 if scheme == "leapfrog" else 1.1 * runs[0].energy_error.item()
+    assert runs[1].energy_error.item() < limit  # leapfrog's steps are short
     lower = [np.abs(run.midspan_deflection[-400:]).max().item() for run in runs]
     assert lower[1] < 0.9 * lower[0]
 
@@ -226,6 +231,34 @@ def test_on_a_foundation_both_schemes_have_one_limit(ends):
     )
     for name in ("peak_force", "plastic_dissipation", "maximum_deflection", "impulse"):
         assert modal[name].item() == pytest.approx(single[name].item(), rel=1e-6, nan_ok=True)
+
+
+def test_leaps_begin_from_the_rest_that_the_foundation_leaves():
+    """Plastic moments bend a beam on a foundation by less than M_0/EI: kappa_p = M_p/(EI + k/k^4).
+
+    No section is watched whose elastic interval holds that by a hair; of M_0/EI all would be.
+    """
+    k = 1e9
+    case, grid, _, (modes, *_) = modal_steps(foundation_stiffness=k)
+    section, random = fibre_section(case), np.random.default_rng(1)
+    plastic = make_plastic_state(grid, section)
+    inside = range(2, grid.last + 1)
+    lengths = np.array([copies(grid, i) * grid.dx for i in inside])
+    moments = random.normal(0.0, 100.0, lengths.size)
+    plastic.M_0[2 : grid.last + 1] = moments
+    for i, moment, length in zip(inside, moments, lengths, strict=True):
+        add_moment(modes.source, modes.bent, i, length * moment)
+    modes.q[:], modes.u[:] = modes.push / modes.D * modes.source, 0.0
+    waves = (2 * np.arange(lengths.size) + 1) * np.pi / case.beam_span
+    shapes = np.cos(np.outer(waves, (grid.mid - np.array(inside)) * grid.dx))
+    shares = 2.0 / case.beam_span * shapes @ (lengths * moments)
+    rest = (shares / (section.stiffness + k / waves**4)) @ shapes
+    plastic.kappa_min[2 : grid.last + 1] = rest - 1e-9 * np.abs(rest).max()
+    plastic.kappa_max[2 : grid.last + 1] = rest + 1e-9 * np.abs(rest).max()
+    begin_flight(modes, plastic, section.stiffness, grid, False)
+    assert modes.leaps.watched[0] == 0
+    begin_flight(modes, plastic, section.stiffness, grid, True)
+    assert modes.leaps.watched[0] > 0.8 * lengths.size
 
 
 @pytest.mark.parametrize(
