@@ -89,7 +89,9 @@ def test_rollers_hold_nothing_and_other_models_know_none():
     assert strains[1][-1] > 0.01  # below, stretched
     assert runs[1].remarks == 0
     free = il.simulate(held(PAPER, "pinned", "roller"), GRID, duration=5e-3)
-    assert free.maximum_deflection == pytest.approx(runs[0].maximum_deflection, rel=1e-3)
+    assert free.maximum_deflection.item() == pytest.approx(
+        runs[0].maximum_deflection.item(), rel=1e-3
+    )
     for model, scheme in (
         ("euler_bernoulli", "leapfrog"),
         ("elastic", "modal"),
@@ -127,8 +129,8 @@ def pulled(beam, ends, N):
 @pytest.mark.parametrize("ends", ["pinned", "clamped"])
 def test_a_slow_push_follows_the_static_solution(ends):
     """Up to twice the depth, where stretching carries much of the force."""
-    impact = held(elastic(heavy(1e5, 0.3)), ends, ends, depth=0.015)
-    run = il.simulate(impact, il.Discretisation(nodes=61), duration=0.1, samples=20001)
+    impact = held(elastic(heavy(1e6, 0.3)), ends, ends, depth=0.015)
+    run = il.simulate(impact, il.Discretisation(nodes=61), duration="0.1 s", samples=20001)
     w, F, beam = run.midspan_deflection.values, run.contact_force.values, impact.beam
     stiffness = {"pinned": 48, "clamped": 192}[ends] * beam.bending_stiffness / beam.span**3
     for share, least in ((0.5, 1.03), (1.0, 1.15), (2.0, 1.5)):
@@ -143,15 +145,16 @@ def test_a_slow_push_follows_the_static_solution(ends):
 
 @pytest.mark.parametrize("ends", ["pinned", "clamped"])
 def test_a_beam_that_yields_all_through_is_a_string(ends):
-    """P = 4 N_p w/L with N_p = A S_y; every fibre is stretched, and the energy is balanced."""
-    impact = held(heavy(1e5, 0.3), ends, ends)
-    run = il.simulate(impact, il.Discretisation(nodes=41), duration=0.3, samples=20001)
+    """P = 4 N_p w/L with N_p = A S_y; fibres on both sides are stretched."""
+    impact = held(heavy(1e6, 0.3), ends, ends)
+    run = il.simulate(impact, il.Discretisation(nodes=41), duration="0.3 s", samples=20001)
     w, F, beam = run.midspan_deflection.values, run.contact_force.values, impact.beam
     late = w > 2.0 * beam.depth
     expected = 4.0 * beam.section.area * beam.material.yield_stress * w / beam.span
     assert w.max() > 3.0 * beam.depth
     assert F[late].mean() == pytest.approx(expected[late].mean(), rel=0.02)
-    assert (run.plastic_strain.sel(x=0.39, method="nearest") > 0.0).all()
+    strains = run.plastic_strain.sel(x=0.39, method="nearest").values
+    assert (strains[1:] > 0.0).all()  # the uppermost fibre may have been compressed before
     assert run.energy_error < 1e-3
 
 
@@ -173,13 +176,13 @@ def test_energy_balances(changes, load):
 
 def test_deflections_converge_at_second_order():
     """The time step goes with the square of the spacing, and the energy's error with its own."""
-    impact = held(elastic(PAPER), "clamped", "pinned", depth=0.012)
+    impact = held(elastic(replace(PAPER, velocity=40.0)), "clamped", "pinned")
     runs = [
-        il.simulate(impact, il.Discretisation(nodes=nodes), duration=2e-3, samples=201)
+        il.simulate(impact, il.Discretisation(nodes=nodes), duration=1e-3, samples=201)
         for nodes in (81, 161, 321, 641)
     ]
     w = [run.midspan_deflection.values for run in runs]
-    assert w[-1].max() > impact.beam.depth
+    assert w[-1].max() > 0.3 * impact.beam.depth
     errors = [np.abs(coarse - fine).max() for coarse, fine in itertools.pairwise(w)]
     assert np.log2(errors[1] / errors[2]) == pytest.approx(2.0, abs=0.25)
     assert runs[-1].energy_error < 1e-6
@@ -268,20 +271,19 @@ def test_what_the_beam_does_not_have_is_refused(changes, message):
 PLAIN = """
 import dataclasses, impactlab as il
 impact = dataclasses.replace(il.paper_impact(20.0), beam_model="von_karman")
-run = il.simulate(impact, il.Discretisation(nodes=11, points=5), duration=2e-4)
-print(run.energy_error.item(), run.midspan_deflection.values[-1].item())
+run = il.simulate(impact, il.Discretisation(nodes=7, points=5), duration=4e-5)
+w = run.midspan_deflection.values[-1].item()
 """
 
 
 def test_the_kernel_runs_as_plain_python():
-    answers = []
-    for setting in ("0", "1"):
-        process = subprocess.run(
-            [sys.executable, "-W", "ignore", "-c", PLAIN],
-            env=os.environ | {"NUMBA_DISABLE_JIT": setting},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        answers.append([float(value) for value in process.stdout.split()])
-    assert answers[0] == pytest.approx(answers[1], rel=1e-6)
+    compiled = {}
+    exec(PLAIN, compiled)
+    process = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", f"{PLAIN}\nprint(w)"],
+        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert float(process.stdout) == pytest.approx(compiled["w"], rel=1e-12)

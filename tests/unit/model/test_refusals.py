@@ -44,7 +44,7 @@ REFUSED = {
     ("Beam", "web_thickness"): [0, -1.0, NAN, INFINITE, "1 A", True, 1e-3],
     ("Beam", "layers"): ["0.5 2 1 1", [(0.5, 2, 1, 1)], "", 5],
     ("Beam", "profile"): ["0 1, 1 1", [(0, 1), (1, 1)], "", 5],
-    ("Beam", "support_left"): ["roller", "Pinned", "", None, 0],
+    ("Beam", "support_left"): ["hinged", "Pinned", "", None, 0],
     ("Beam", "support_right"): ["fixed", "Clamped", "", None, 1],
     **{
         ("Beam", f"{kind}stiffness_{side}"): NEGATIVE
