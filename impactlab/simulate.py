@@ -95,7 +95,8 @@ def simulate(
 
     The dent that ten strikes leave, each with the beam at rest again:
 
-    >>> ten = dataclasses.replace(il.paper_impact("5 m/s"), strikes=10)
+    >>> from dataclasses import replace
+    >>> ten = replace(il.paper_impact("5 m/s"), strikes=10)
     >>> grid = il.Discretisation(nodes=65, scheme="modal")
     >>> run = il.simulate(ten, grid, duration="10 ms")
     >>> run.permanent_indentation_over_strikes.sizes["strike"]

@@ -14,6 +14,7 @@ from impactlab import variables as dataset
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.variables import (
+    BY_STRIKE,
     COORDINATES,
     FAILED,
     FAILURES,
@@ -34,9 +35,9 @@ from impactlab.variables import (
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
-TABLE = RESPONSES | HISTORIES | PROFILES | FIELDS | COORDINATES | PARAMETERS
+TABLE = RESPONSES | HISTORIES | PROFILES | FIELDS | BY_STRIKE | COORDINATES | PARAMETERS
 BITS = {name: bit for name, (bit, _) in STATUS_FLAGS.items()}
-WHOLE_RUN = {"diverged", "energy_out_of_balance", "stopped"}
+WHOLE_RUN = {"diverged", "energy_out_of_balance", "earlier_strike_unfinished", "stopped"}
 
 
 @pytest.mark.parametrize("name", TABLE)
@@ -48,7 +49,7 @@ def test_units_are_udunits_and_names_are_spelled_out(name):
 
 
 def test_no_name_is_used_twice():
-    tables = (RESPONSES, HISTORIES, PROFILES, FIELDS, COORDINATES, PARAMETERS)
+    tables = (RESPONSES, HISTORIES, PROFILES, FIELDS, BY_STRIKE, COORDINATES, PARAMETERS)
     assert sum(map(len, tables)) == len(TABLE)
     # an unknown variable is an error
     with pytest.raises(KeyError, match="contact_farce"):

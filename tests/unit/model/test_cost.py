@@ -36,6 +36,7 @@ PAPER: dict[str, Any] = {
     "strike_position": 0.5,
     "axis_held_left": 1,
     "axis_held_right": 1,
+    "strikes": 1,
     "beam_model": BEAM_MODELS.index("euler_bernoulli"),
 }
 
@@ -46,6 +47,7 @@ def test_steps_of_bending_and_of_a_bar_wave_by_hand():
     assert node_steps(PAPER) == pytest.approx(0.5 * 201 * 1e-3 / (0.5 * bending))
     wave = node_steps(PAPER | {"scheme": SCHEMES.index("modal")})
     assert wave == pytest.approx(0.5 * 201 * 1e-3 / (0.5 * dx / speed))
+    assert node_steps(PAPER | {"strikes": 91}) == pytest.approx(91 * node_steps(PAPER))
     timoshenko = node_steps(PAPER | {"beam_model": BEAM_MODELS.index("timoshenko")})
     assert timoshenko == pytest.approx(2.0 * wave)
     # columns are many runs at once

@@ -21,7 +21,7 @@ OTHER_NAMES = {
     "rule": "layers",
     "scheme": "modal",
 }
-OTHER_COUNTS = {"nodes": 55, "points": 6}
+OTHER_COUNTS = {"strikes": 91, "nodes": 55, "points": 6}
 STATED = {"sphere_mass": 2.5, "element_size": 2e-3, "elements_per_radius": 3.0}
 STATED |= {"shear_coefficient": 0.7, "beam_wall_thickness": 3e-3}
 STATED |= {"beam_profile": "0.0 0.5, 1.0 1.0"}

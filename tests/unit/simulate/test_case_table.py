@@ -46,7 +46,7 @@ WORDS = {"contact": LAWS, "beam_model": BEAM_MODELS[:2], "load": LOADS}
 WORDS |= {name: (word,) for name, word in TIMOSHENKO_OPTIONS.items()}
 WORDS |= {"rule": RULES, "scheme": SCHEMES}
 WORDS |= {"support_left": ("pinned",), "support_right": ("pinned",), "strike_position": (0.5,)}
-COUNTS = {"nodes": (5, 19, 1201), "points": (2, 3, 64)}
+COUNTS = {"strikes": (1, 2, 91), "nodes": (5, 19, 1201), "points": (2, 3, 64)}
 
 
 def any_values(name):

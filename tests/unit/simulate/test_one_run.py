@@ -66,7 +66,7 @@ def test_every_variable_is_there_on_its_dimensions(run):
     names = {*PARAMETERS, "duration"} - {*SIZES}  # of the 3-D model alone
     names -= {*SECTION} - {"beam_shape"}
     assert {name: run[name].item() for name in names} == expected
-    assert set(run.coords) == {*names, *COORDINATES} - {"run", "field_time"}
+    assert set(run.coords) == {*names, *COORDINATES} - {"run", "field_time", "strike"}
 
 
 def test_default_discretisation():
