@@ -1,4 +1,4 @@
-"""What the bits of `status` and `remarks` say, in sentences."""
+"""Explanations of the bits of `status` and `remarks`, in sentences."""
 
 from __future__ import annotations
 
