@@ -51,7 +51,7 @@ TOGETHER = {
     if name not in ("elements_per_radius", "beam_profile", "beam_layers")
     and "thickness" not in name
 } | {"beam_shape": "rectangle"}
-TOGETHER["beam_rate_sensitivity"] = 0.0
+TOGETHER |= {"beam_rate_sensitivity": 0.0, "strikes": 1}
 """Without what contradicts another."""
 
 
