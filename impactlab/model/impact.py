@@ -33,6 +33,7 @@ MID_SPAN = 0.5
 """Usual place of the strike over the span."""
 HINGES = ("pinned", "roller")
 """Supports against deflection alone; a roller does not hold the axis (solver/von_karman.py)."""
+SIDES = ("left", "right")
 MOVING_SUPPORTS = ("free", "elastic")
 """Supports whose end can be struck."""
 SPRUNG_BEAM = f"{' or '.join(BENDING_MODELS)} with elastic ends: change it, or set other supports"
@@ -269,9 +270,8 @@ def corrected_impact(velocity: Quantity = 0.99) -> Impact:
 
 def is_plain(impact: Impact) -> Any:
     """Return whether both ends are hinges and mid-span is struck, of each run."""
-    pinned = np.isin(impact.beam.support_left, HINGES)
-    pinned &= np.isin(impact.beam.support_right, HINGES)
-    return pinned & np.equal(impact.strike_position, MID_SPAN)
+    left, right = (np.isin(getattr(impact.beam, f"support_{side}"), HINGES) for side in SIDES)
+    return left & right & np.equal(impact.strike_position, MID_SPAN)
 
 
 BASES = {"paper": paper_impact, "corrected": corrected_impact}

@@ -40,12 +40,13 @@ RUNS = 40
 RANDOM = np.random.default_rng(3)
 NAMES = tuple(name for name in PARAMETERS if name not in SECTION)
 """Of any beam; those of one shape are in test_shapes."""
-TOGETHER = tuple(name for name in NAMES if name not in (SIZES[1], "beam_rate_sensitivity"))
-"""But for what contradicts another."""
+CONTRADICTING = (SIZES[1], "beam_rate_sensitivity", "strikes")
+TOGETHER = tuple(name for name in NAMES if name not in CONTRADICTING)
 WORDS = {"contact": LAWS, "beam_model": BEAM_MODELS[:2], "load": LOADS}
 WORDS |= {name: (word,) for name, word in TIMOSHENKO_OPTIONS.items()}
 WORDS |= {"rule": RULES, "scheme": SCHEMES}
 WORDS |= {"support_left": ("pinned",), "support_right": ("pinned",), "strike_position": (0.5,)}
+WORDS |= {"damping_ratio": (0.0,)}
 COUNTS = {"strikes": (1, 2, 91), "nodes": (5, 19, 1201), "points": (2, 3, 64)}
 
 

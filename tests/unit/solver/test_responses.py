@@ -57,15 +57,15 @@ def test_a_pause_below_a_twentieth_does_not_end_the_first_contact(pause, duratio
     """The surfaces part at 1, for the pause, then touch for 1; steps of 1e-3."""
 
     @compiled
-    def march(events, pause):
-        start(events)
+    def march(events, contact, pause):
+        start(events, contact, 0)
         for step in range(1, 4000):
             t = 1e-3 * step
             delta = max(1.0 - t, min(t - 1.0 - pause, 2.0 + pause - t))
             update_events(events, delta, 0.0, 0.0, 1.0, 0.0, t, 1e-3)
 
     events = np.zeros(1, EVENTS)[0]
-    march(events, pause)
+    march(events, np.zeros(1, CONTACT)[0], pause)
     assert events.t_first_end == pytest.approx(duration, abs=1e-3)
     assert events.contacts == 2
     assert events.time_in_contact == pytest.approx(2.0, abs=1e-2)
