@@ -277,8 +277,9 @@ def engineering(value: float, units: str, digits: int = 4) -> str:
 
 
 def symbol(units: str) -> str:
-    """Return SI units as people write them: "m/s²" for "m s-2"."""
-    return re.sub(r" (\w+)-(\d)", r"/\1\2", units).translate(str.maketrans("23", "²³", "1"))
+    """Return SI units as people write them: "m/s²" for "m s-2", "1/s" for "s-1"."""
+    text = re.sub(r"(?:^| )(\w+)-(\d)", r"/\1\2", units).translate(str.maketrans("23", "²³", "1"))
+    return f"1{text}" if text.startswith("/") else text
 
 
 def shown(name: str, value: object, units: str) -> str:

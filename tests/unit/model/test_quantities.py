@@ -191,6 +191,7 @@ def test_amounts(size, words):
         (0.0, "m", "0 m"),
         (3e-13, "J", "0.0003 nJ"),
         (0.1445, "1", "0.1445"),
+        (40.4, "s-1", "40.4 1/s"),
     ],
 )
 def test_quantities_in_engineering_notation(value, units, words):
