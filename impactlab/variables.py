@@ -137,8 +137,8 @@ WARNINGS: dict[str, tuple[int, str]] = {
     "stretching_left_out": (
         outputs.STRETCHING_LEFT_OUT,
         "both ends hold the axis, and the axial force of a beam that deflects so far, which this "
-        "model leaves out, takes about 2 % or more off the largest deflection: "
-        "beam_model: von_karman has it, and rollers have none",
+        "model leaves out, takes more than 2 % off the largest deflection by an estimate that is "
+        "right within a factor of three: beam_model: von_karman has it, and rollers have none",
     ),
     "skin_may_give": (
         outputs.SKIN_MAY_GIVE,

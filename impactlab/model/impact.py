@@ -33,7 +33,6 @@ MID_SPAN = 0.5
 """Usual place of the strike over the span."""
 HINGES = ("pinned", "roller")
 """Supports against deflection alone; a roller does not hold the axis (solver/von_karman.py)."""
-SIDES = ("left", "right")
 MOVING_SUPPORTS = ("free", "elastic")
 """Supports whose end can be struck."""
 SPRUNG_BEAM = f"{' or '.join(BENDING_MODELS)} with elastic ends: change it, or set other supports"
@@ -43,10 +42,7 @@ RESISTED_BEAM = (
     "change it, or set these to 0"
 )
 """The same, of what resists the motion."""
-STRUCK_AGAIN = (
-    f"must be 1 with {', '.join(RESISTANCES[:-1])} or {RESISTANCES[-1]}: change it, or set these "
-    "to 0"
-)
+ON_FOUNDATION = "must be 1 on a foundation: change it, or set foundation_stiffness: 0"
 """Message on repeated strikes."""
 STRETCHED_LAYERS = (
     "must not be von_karman with shape: laminate, for it stretches one metal alone: change it, or "
@@ -173,8 +169,8 @@ class Impact:
         resisted = sum(np.greater(getattr(beam, field), 0.0) for field in RESISTANCES)
         sound = np.isin(self.beam_model, BENDING_MODELS) | np.equal(resisted, 0)
         require(sound, "Impact", "beam_model", self.beam_model, f"must be {RESISTED_BEAM}")
-        alone = np.equal(strikes, 1) | np.equal(resisted, 0)
-        require(alone, "Impact", "strikes", strikes, STRUCK_AGAIN)
+        alone = np.equal(strikes, 1) | np.equal(beam.foundation_stiffness, 0)
+        require(alone, "Impact", "strikes", strikes, ON_FOUNDATION)
         sound = np.not_equal(beam.shape, "laminate") | np.not_equal(self.beam_model, "von_karman")
         require(sound, "Impact", "beam_model", self.beam_model, STRETCHED_LAYERS)
 
@@ -270,7 +266,8 @@ def corrected_impact(velocity: Quantity = 0.99) -> Impact:
 
 def is_plain(impact: Impact) -> Any:
     """Return whether both ends are hinges and mid-span is struck, of each run."""
-    left, right = (np.isin(getattr(impact.beam, f"support_{side}"), HINGES) for side in SIDES)
+    left = np.isin(impact.beam.support_left, HINGES)
+    right = np.isin(impact.beam.support_right, HINGES)
     return left & right & np.equal(impact.strike_position, MID_SPAN)
 
 

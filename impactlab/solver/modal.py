@@ -118,6 +118,14 @@ def _bend(
 
 
 @inlined
+def _take_moment(modes: Modes, plastic: PlasticState, grid: BeamGrid, i: int, M_0: float) -> None:
+    """Make M_0 that of section i (N m), and bring its change to the modes."""
+    length = copies(grid, i) * grid.dx
+    add_moment(modes.source, modes.bent, i, length * (M_0 - plastic.M_0[i]))
+    plastic.M_0[i] = M_0
+
+
+@inlined
 def bend_sections(
     modes: Modes, plastic: PlasticState, section: FibreSection, grid: BeamGrid
 ) -> None:
@@ -129,10 +137,8 @@ def bend_sections(
         kappa = mode_curvature(modes.q, modes.bent, i)
         if kappa > plastic.kappa_max[i] or kappa < plastic.kappa_min[i]:
             M_0 = _bend(plastic, section, section.rate, i, kappa, grid.dt)
-            length = copies(grid, i) * grid.dx
-            add_moment(modes.source, modes.bent, i, length * (M_0 - plastic.M_0[i]))
+            _take_moment(modes, plastic, grid, i, M_0)
             modes.leaps.memory[FRESH] = 0
-            plastic.M_0[i] = M_0
 
 
 @allocating
@@ -340,9 +346,8 @@ def _settle(state: State) -> None:
                 M_0, plastic.kappa_min[i], plastic.kappa_max[i] = bend(
                     section, kappa, plastic.plastic_strain, plastic.peeq, i
                 )
-                length = copies(grid, i) * grid.dx
-                add_moment(modes.source, modes.bent, i, length * (M_0 - plastic.M_0[i]))
-                plastic.M_0[i], outside = M_0, True
+                _take_moment(modes, plastic, grid, i, M_0)
+                outside = True
     beam.w[0, grid.mid] = beam.w[1, grid.mid] = w
     beam.u[grid.mid] = 0.0
     land(modes.leaps, w)

@@ -18,7 +18,7 @@ which closes the balance of energy to round-off. Source: Rayleigh, Theory of Sou
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -32,6 +32,7 @@ from impactlab.solver.types import ONE, TWO, Array, Record
 
 _PLAIN_MAKE, _PLAIN_STEP, _PLAIN_CURVATURE = euler_bernoulli.MODEL[:3]
 _PLAIN_ENERGY, _PLAIN_SPREAD = euler_bernoulli.MODEL.energy, euler_bernoulli.MODEL.spread
+_PLAIN_SETTLE: Any = euler_bernoulli.MODEL.settle
 
 
 class Resistance(NamedTuple):
@@ -180,4 +181,13 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
     return ahead, 0.0 if state.extra.acts else missing  # `before` knows of the force's place
 
 
-MODEL = BeamModel(_make, _step, _curvature, _energy, euler_bernoulli.deflected, _spread)
+@compiled
+def _settle(state: State) -> None:
+    extra = state.extra
+    for i in range(extra.before.size):
+        extra.before[i] = extra.drag[i] = 0.0
+    extra.lost[0] = 0.0
+    _PLAIN_SETTLE(_plain(state))
+
+
+MODEL = BeamModel(_make, _step, _curvature, _energy, euler_bernoulli.deflected, _spread, _settle)

@@ -26,7 +26,7 @@ tan^2(theta/2), which is no less. Leaps (flight.py) are of undamped modes: a dam
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -43,6 +43,7 @@ from impactlab.solver.types import Array, Record
 _PLAIN_STEP, _PLAIN_ENERGY = modal.MODEL.step, modal.MODEL.energy
 _PLAIN_CURVATURE, _PLAIN_DEFLECT = modal.MODEL.curvature, modal.MODEL.deflect
 _PLAIN_SPREAD = modal.MODEL.spread
+_PLAIN_SETTLE: Any = modal.MODEL.settle
 _PLAIN_LEAP, _PLAIN_RETRACE, _PLAIN_LARGEST = modal.FLIGHT
 _LEFT_OUT = 3.0 / 7.0
 """Of the foundation, of the modes left out: their sum of k^-8 over that of k^-4 and the first."""
@@ -233,6 +234,14 @@ def _largest(state: State, w_max: float) -> float:
     return _PLAIN_LARGEST(_plain(state), w_max)
 
 
+@compiled
+def _settle(state: State) -> None:
+    extra = state.extra
+    for p in range(extra.before.size):
+        extra.before[p] = extra.lost[p] = 0.0
+    _PLAIN_SETTLE(_plain(state))
+
+
 MODEL = BeamModel(
     make,
     _step,
@@ -240,6 +249,7 @@ MODEL = BeamModel(
     _energy,
     _deflect,
     _spread,
+    _settle,
     flight_stride=modal.MODEL.flight_stride,
     flight=Flight(_leap, _retrace, _largest),
     renew=renew,

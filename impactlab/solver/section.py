@@ -216,6 +216,31 @@ def bend(
 
 
 @compiled
+def flow_at_rate(
+    moduli: Moduli,
+    rate: RateLaw,
+    trial: float,
+    growth: float,
+    plastic_strain: float,
+    peeq: float,
+    dt: float,
+) -> tuple[float, float, float]:
+    """Let a fibre flow for the time dt (s).
+
+    trial (Pa): its stress over the back stress, were it elastic in that time; growth (Pa): the part
+    of this time. Returns plastic_strain, peeq and the work of the overstress (J/m3).
+    """
+    E, S_y, H_i, H_k = moduli
+    Y = S_y + H_i * peeq
+    if abs(trial) <= Y * (1.0 + _ROUND_OFF):
+        return plastic_strain, peeq, 0.0
+    s, slip = overstress(abs(trial), Y, H_i, E + H_k, dt, rate)
+    over = max(abs(trial - growth) - Y, 0.0)
+    work = 0.5 * (over + s * (Y + H_i * slip)) * slip
+    return plastic_strain + math.copysign(slip, trial), peeq + slip, work
+
+
+@compiled
 def bend_at_rate(
     section: FibreSection,
     rate: RateLaw,
@@ -236,13 +261,12 @@ def bend_at_rate(
     M_0, kappa_min, kappa_max, work = 0.0, -FAR, FAR, 0.0
     for j in range(z.size):
         strain, slipped = plastic_strain[i, j], peeq[i, j]
-        Y, trial = S_y + H_i * slipped, -E * z[j] * kappa - (E + H_k) * strain
-        if abs(trial) > Y * (1.0 + _ROUND_OFF):
-            s, slip = overstress(abs(trial), Y, H_i, E + H_k, dt, rate)
-            over = max(abs(trial + E * z[j] * (kappa - before)) - Y, 0.0)
-            work += 0.5 * (over + s * (Y + H_i * slip)) * slip * section.area[j]
-            strain, slipped = strain + math.copysign(slip, trial), slipped + slip
-            plastic_strain[i, j], peeq[i, j] = strain, slipped
+        trial, growth = -E * z[j] * kappa - (E + H_k) * strain, -E * z[j] * (kappa - before)
+        strain, slipped, lost = flow_at_rate(
+            section.moduli, rate, trial, growth, strain, slipped, dt
+        )
+        work += lost * section.area[j]
+        plastic_strain[i, j], peeq[i, j] = strain, slipped
         M_0 -= lever[j] * strain
         least, largest = elastic_range(strain, slipped, E, S_y, H_i, H_k)
         kappa_min = max(kappa_min, -largest / z[j])

@@ -66,6 +66,7 @@ class BeamModel(NamedTuple):
     energy: Callable[..., float]
     deflect: Callable[..., None]
     spread: Callable[..., tuple[float, float]]
+    settle: Callable[..., None] | None
     flight_stride: int = 1
     flight: Flight | None = None
     renew: Callable[..., None] | None = None
@@ -76,4 +77,3 @@ class BeamModel(NamedTuple):
     moments: Callable[..., tuple[float, float]] | None = None
     bend_back: Callable[..., None] | None = None
     section: tuple[Callable[..., Any], Callable[..., Any]] | None = None
-    settle: Callable[..., None] | None = None

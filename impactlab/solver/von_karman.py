@@ -27,29 +27,26 @@ Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35 (both recalled).
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
+from impactlab.solver import euler_bernoulli, timoshenko
 from impactlab.solver.beam import FREE, SYMMETRIC, BeamGrid, BeamState, copies, is_end, mirror
-from impactlab.solver.contact_patch import spread_over_nodes
-from impactlab.solver.euler_bernoulli import deflected
-from impactlab.solver.fibre_plasticity import PlasticState, curvature, plastic_energy
+from impactlab.solver.fibre_plasticity import PlasticState, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
 from impactlab.solver.section import (
     FAR,
     FibreSection,
     cut_whole_section,
     elastic_range,
+    flow_at_rate,
     make_whole_room,
     return_mapping,
 )
 from impactlab.solver.state import BeamModel, State
-from impactlab.solver.strain_rate import RateLaw, overstress
+from impactlab.solver.strain_rate import RateLaw
 from impactlab.solver.types import ONE, Array, Index, Record
-
-_ROUND_OFF = 1e-12
 
 
 class Stretch(NamedTuple):
@@ -201,13 +198,11 @@ def strain_fibres(
     for j in range(z.size):
         strain, slipped, now = plastic_strain[i, j], peeq[i, j], e - z[j] * kappa
         if rate is not None and rate.D > 0.0:
-            Y, trial = S_y + H_i * slipped, E * now - (E + H_k) * strain
-            if abs(trial) > Y * (1.0 + _ROUND_OFF):
-                s, slip = overstress(abs(trial), Y, H_i, E + H_k, dt, rate)
-                was = trial - E * (now - before[0] + z[j] * before[1])
-                over = max(abs(was) - Y, 0.0)
-                work += 0.5 * (over + s * (Y + H_i * slip)) * slip * section.area[j]
-                strain, slipped = strain + math.copysign(slip, trial), slipped + slip
+            trial, growth = E * now - (E + H_k) * strain, E * (now - before[0] + z[j] * before[1])
+            strain, slipped, lost = flow_at_rate(
+                section.moduli, rate, trial, growth, strain, slipped, dt
+            )
+            work += lost * section.area[j]
         else:
             strain, slipped = return_mapping(now, strain, slipped, E, S_y, H_i, H_k)
         plastic_strain[i, j], peeq[i, j] = strain, slipped
@@ -276,11 +271,6 @@ def _elastic_energy(
 
 
 @compiled
-def _curvature(state: State, now: int) -> float:
-    return curvature(state.beam.w, now, None, state.grid, np.uint64(state.grid.mid))
-
-
-@compiled
 def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
     EI = state.section.stiffness
@@ -288,18 +278,13 @@ def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     return stored + dissipated + elastic
 
 
-@compiled
-def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
-    ahead, _, _ = spread_over_nodes(state.beam, state.grid, now, F, a)
-    return ahead, 0.0
-
-
 MODEL = BeamModel(
     _make,
     _step,
-    _curvature,
+    euler_bernoulli.MODEL.curvature,
     _energy,
-    deflected,
-    _spread,
+    euler_bernoulli.deflected,
+    timoshenko.MODEL.spread,
+    settle=None,
     section=(make_whole_room, cut_whole_section),
 )
