@@ -28,7 +28,7 @@ store: {histories: true, samples: 50}
 RUNS = 480
 SMALL = ("--batch-seconds", "0.03")
 """About eighty batches."""
-PATIENCE = 300.0
+PATIENCE = 120.0
 """Seconds to wait before a test counts as stuck."""
 
 
