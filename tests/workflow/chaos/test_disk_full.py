@@ -59,7 +59,7 @@ def complains(command, *words):
         assert word in said, said
 
 
-@pytest.mark.parametrize("left", [50_000, 300_000])
+@pytest.mark.parametrize("left", [50_000, 300_000, 600_000])
 def test_while_shards_are_written(small_disk, left, undisturbed):
     fill(small_disk, left)
     complains(forced(small_disk, "--workers", "2", *SMALL), "shards", "free")

@@ -37,11 +37,8 @@ def interrupted(folder, at_work, moments, to_all, *engine):
     return command.said
 
 
-@pytest.mark.parametrize(
-    ("engine", "to_all"),
-    [((), False), (("--processes",), True)],
-    ids=["threads alone", "processes as a group"],
-)
+@pytest.mark.parametrize("to_all", [False, True], ids=["alone", "group"])
+@pytest.mark.parametrize("engine", [(), ("--processes",)], ids=["threads", "processes"])
 def test_interrupted_studies_go_on(folder, engine, to_all, undisturbed):
     moments = random.Random(f"{engine} {to_all}")
     before = 0

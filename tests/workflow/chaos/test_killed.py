@@ -30,7 +30,7 @@ def disturbed(folder, moments):
     return code != 0
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", range(3))
 def test_killed_studies_go_on(folder, seed, undisturbed):
     """Each seed eight times; a study that ends before its moment is checked, and begun anew."""
     moments = random.Random(seed)

@@ -36,7 +36,7 @@ def test_both_started_at_the_same_moment(folder, undisturbed):
     assert_same_bits(stored(folder), undisturbed)
 
 
-@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGTERM])
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
 def test_a_dead_process_holds_up_nobody(folder, how, undisturbed):
     first = run(folder, *SMALL)
     first.wait_for_shards(2)
