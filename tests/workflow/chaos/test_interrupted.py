@@ -33,7 +33,7 @@ def interrupted(folder, at_work, moments, to_all, *engine):
     (os.killpg if to_all else os.kill)(command.process.pid, signal.SIGINT)
     assert command.end() == 130, command.said
     assert gone(workers), f"still there: {workers}"
-    assert not command.others()
+    assert gone(command.others())  # multiprocessing's tracker outlives the workers for a moment
     return command.said
 
 
