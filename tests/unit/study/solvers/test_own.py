@@ -1,8 +1,5 @@
 """Functions of the user: solved, kept and analysed like ours, and never taken for one another."""
 
-import functools
-import math
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -13,7 +10,6 @@ from impactlab.figures import access, catalogue, labels
 from impactlab.report import measured
 from impactlab.report.study import write_report
 from impactlab.study import steps
-from impactlab.study.solvers.fingerprint import fingerprint
 from impactlab.study.solvers.own import TASKS
 
 SCALE = 1.0
@@ -34,6 +30,10 @@ def work(run):
 
 def product(a, b=2.0):
     return a * b
+
+
+def times(factor):
+    return lambda run: factor * run.impulse
 
 
 SAMPLE = il.Sobol(
@@ -337,50 +337,11 @@ def test_tidying_up_leaves_runs_of_functions_alone(folder):
         assert found == {}
 
 
-def inner(factor):
-    def scaled(run):
-        return factor * helper(run)
-
-    return scaled
-
-
-def helper(run):
-    return math.sqrt(run.impulse)
-
-
-def other(run):
-    return math.sin(run.impulse)
-
-
-@pytest.mark.parametrize(
-    ("one", "another"),
-    [
-        (inner(1.0), inner(2.0)),
-        (lambda run: run.impulse, lambda run: run.restitution),
-        (lambda run: run.impulse + 1, lambda run: run.impulse + 2),
-        (functools.partial(product, b=1), functools.partial(product, b=2)),
-        (lambda run, power=1: run.impulse**power, lambda run, power=2: run.impulse**power),
-        (lambda run: np.sin(run.impulse), lambda run: np.cos(run.impulse)),
-        (lambda run: helper(run), lambda run: other(run)),
-        (lambda run: run.impulse in {1, 2}, lambda run: run.impulse in {1, 3}),
-    ],
-)
-def test_functions_that_differ_have_fingerprints_that_differ(one, another):
-    assert fingerprint(one) == fingerprint(one)
-    assert fingerprint(one) != fingerprint(another)
-
-
-def test_a_changed_helper_changes_the_fingerprint(monkeypatch):
-    before = fingerprint(inner(1.0))
-    monkeypatch.setitem(globals(), "helper", other)
-    assert fingerprint(inner(1.0)) != before
-
-
 @pytest.mark.parametrize(
     ("responses", "said"),
     [
         ({"own": lambda run: TABLE}, "responses.own: its global TABLE is of type object, which"),
-        ({"own": inner(object())}, "responses.own: its variable factor is of type object, which"),
+        ({"own": times(object())}, "responses.own: its variable factor is of type object, which"),
         ({"own": 3}, "responses.own: is of type int: expected a function"),
         ({"velocity": work}, "responses.velocity: cannot name a response: another variable"),
         ({"peak_force": work}, "responses.peak_force: cannot name a response: another variable"),
