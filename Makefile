@@ -95,7 +95,7 @@ oldest: $(MADE_OLDEST)
 	  -m 'not slow and not long and not chaos' $(addprefix tests/unit/,$(OLDEST_TESTS)) $(PYTEST_ARGS)
 
 docs: $(MADE)-docs
-	$(IN_VENV) python -m sphinx -W --keep-going --quiet -d build/docs docs site
+	$(IN_VENV) python -m sphinx -W --keep-going --quiet --jobs auto -d build/docs docs site
 	@echo 'Done. Open site/index.html'
 
 stored: $(MADE)-docs

@@ -81,7 +81,7 @@ def _link(app: Sphinx, what: str, name: str, thing, options, lines: list[str]) -
     lines[:] = [re.sub(r"`il\.([\w.]+)`", r"`il.\1 <impactlab.\1>`", line) for line in lines]
 
 
-def setup(app: Sphinx) -> None:
+def setup(app: Sphinx) -> dict[str, bool]:
     """Write pages from results first; equations become MathML, which needs no script."""
     app.add_html_math_renderer(
         "mathml",
@@ -90,3 +90,4 @@ def setup(app: Sphinx) -> None:
     )
     app.connect("autodoc-process-docstring", _link)
     app.connect("builder-inited", lambda app: made.make())
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

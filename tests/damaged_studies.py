@@ -1,6 +1,7 @@
 """Study files with random damage: every kind of study, every kind of mistake, and raw bytes."""
 
 import json
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -171,10 +172,15 @@ def _written(tree: Any) -> str:
     return json.dumps(tree).replace("NaN", ".nan").replace("Infinity", ".inf")
 
 
+@cache
+def _content(kind: str) -> Any:
+    return YAML(typ="safe", pure=True).load(VALID[kind])
+
+
 @st.composite
 def damaged(draw: Any, kind: str) -> bytes:
     """Return a study file of this kind with one to three mistakes, and sometimes broken bytes."""
-    tree = _tree(YAML(typ="safe", pure=True).load(VALID[kind]))
+    tree = _tree(_content(kind))
     for _ in range(draw(st.integers(1, 3))):
         _damage(draw, tree)
     text = "\n".join(f"{_written(key)}: {_written(value)}" for key, value in tree)

@@ -156,6 +156,7 @@ def add(
         if covered:
             size = rcParams["lines.markersize"] + 2.6 * covered
             shape |= {"markersize": size, "markerfacecolor": "none", "markeredgewidth": 0.8}
+            shape["clip_on"] = False  # the axes leave room for markers of the usual size
         ax.plot(x, y, label=curve.label or "_only", **shape)
     return finite
 

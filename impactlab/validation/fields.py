@@ -102,7 +102,9 @@ def by_name(
     title: str, types: Mapping[str, Any], data: Any, info: ValidationInfo
 ) -> dict[str, Any]:
     """Read a mapping of some of these keys, each with its type; return it in the file's order."""
-    fields: Any = {name: (kind, None) for name, kind in types.items()}
+    usual = isinstance(data, dict) and data.keys() <= types.keys()
+    names = data if usual else types  # all of them, for the message on another one
+    fields: Any = {name: (types[name], None) for name in names}
     section = create_model(title, __base__=FileSection, **fields)
     content = section.model_validate(data, context=info.context)
     return {name: getattr(content, name) for name in data}

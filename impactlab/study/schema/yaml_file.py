@@ -20,6 +20,7 @@ from ruamel.yaml.constructor import ConstructorError, SafeConstructor
 from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.events import CollectionEndEvent, CollectionStartEvent, NodeEvent
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+from ruamel.yaml.parser import Parser
 
 from impactlab.validation.errors import Problem, StudyError, dotted
 
@@ -100,8 +101,7 @@ def read_mapping(text: str, file: str) -> dict[str, Any]:
     """Return the mapping in a YAML text. Raises StudyError, naming the file, unless it is one."""
     try:
         yaml = YAML(typ="safe", pure=True)
-        yaml.Constructor = Constructor
-        _check_size(text)
+        yaml.Parser, yaml.Constructor = BoundedParser, Constructor
         data, root = None, yaml.compose(text)
         if root is not None:
             _measure(root, (), {})  # before anything is built
@@ -155,17 +155,23 @@ class RefusedError(ValueError):
         self.key = dotted(path[:3])
 
 
-def _check_size(text: str) -> None:
-    """Raise RefusedError for too many nodes, or levels, without building anything."""
+class BoundedParser(Parser):
+    """A parser that raises RefusedError for too many nodes, or levels, as soon as it meets them."""
+
     nodes = level = 0
-    for event in YAML(typ="safe", pure=True).parse(text):
-        nodes += isinstance(event, NodeEvent)
-        level += isinstance(event, CollectionStartEvent) - isinstance(event, CollectionEndEvent)
-        if nodes > MOST:
+
+    def get_event(self) -> Any:
+        """Return the next event."""
+        event = super().get_event()
+        self.nodes += isinstance(event, NodeEvent)
+        self.level += isinstance(event, CollectionStartEvent)
+        self.level -= isinstance(event, CollectionEndEvent)
+        if self.nodes > MOST:
             raise RefusedError((), f"holds more than {MOST:,} keys and values: shorten it")
-        if level > _DEEPEST + 1:  # at once: a parser takes the square of the levels
+        if self.level > _DEEPEST + 1:  # at once: a parser takes the square of the levels
             where = f"line {event.start_mark.line + 1}"
             raise RefusedError((), f"{where}: nests too deeply (is a quotation mark missing?)")
+        return event
 
 
 class Constructor(SafeConstructor):
