@@ -7,7 +7,7 @@ written once. A refused column may still hold valid runs: then the runs are chec
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from difflib import get_close_matches
 from numbers import Integral, Real
 from typing import Any
@@ -35,7 +35,7 @@ def column(values: Iterable[Any]) -> Column:
 
 def require(holds: Any, owner: str, field: str, value: Any, message: str) -> None:
     """Raise ValueError naming the field and what it must be, unless `holds`: all of a column."""
-    if not np.all(holds):
+    if holds is not True and not np.all(holds):
         # Python refuses to write out numbers of thousands of digits
         huge = isinstance(value, int) and value.bit_length() > 1024
         shown = f"a number of {value.bit_length()} bits" if huge else repr(value)
@@ -79,12 +79,17 @@ def integer(owner: str, field: str, value: Any, least: int) -> int:
 def one_of(owner: str, field: str, value: Any, choices: tuple[str, ...]) -> str:
     """Return `value` if it is among `choices`, or raise ValueError naming field and choices."""
     if isinstance(value, Column):
-        among = set(value.tolist()) <= set(choices)
+        listed = set(value.tolist()) <= set(choices)
     else:  # other arrays have no truth
-        among = isinstance(value, str) and value in choices
-    message = f"must be one of {', '.join(choices)}{did_you_mean(value, choices)}"
-    require(among, owner, field, value, message)
+        listed = isinstance(value, str) and value in choices
+    nearest = "" if listed else did_you_mean(value, choices)
+    require(listed, owner, field, value, f"must be one of {', '.join(choices)}{nearest}")
     return value if isinstance(value, Column) else str(value)  # type: ignore[return-value]
+
+
+def among(value: Any, choices: Collection[str]) -> Any:
+    """Return whether a word, or each of a column, is one of these."""
+    return np.isin(value, [*choices]) if isinstance(value, Column) else value in choices
 
 
 def did_you_mean(word: object, choices: Iterable[str]) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 
 from impactlab import wings
 from impactlab.model.bodies import Beam, Sphere
-from impactlab.model.checks import instance, integer, number, one_of, positive, require
+from impactlab.model.checks import among, instance, integer, number, one_of, positive, require
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI, Quantity, engineering
 from impactlab.solver import (
@@ -139,7 +139,7 @@ class Impact:
         instance("Impact", "beam", self.beam, Beam)
         strikes = integer("Impact", "strikes", self.strikes, 1)
         object.__setattr__(self, "strikes", strikes)
-        alone = np.equal(strikes, 1) | np.isin(self.beam_model, SETTLING_MODELS)
+        alone = np.equal(strikes, 1) | among(self.beam_model, SETTLING_MODELS)
         require(alone, "Impact", "strikes", strikes, f"must be 1 with {OTHER_MODEL}")
         positive("Impact", "velocity", self.velocity)
         gravity = number("Impact", "gravity", self.gravity)
@@ -150,24 +150,24 @@ class Impact:
         one_of("Impact", "contact_compliance", self.contact_compliance, COMPLIANCES)
         one_of("Impact", "contact_prestress", self.contact_prestress, PRESTRESSES)
         place, beam = number("Impact", "strike_position", self.strike_position), self.beam
-        on_end = np.equal(place, 0.0) & np.isin(beam.support_left, MOVING_SUPPORTS)
-        on_end |= np.equal(place, 1.0) & np.isin(beam.support_right, MOVING_SUPPORTS)
+        on_end = np.equal(place, 0.0) & among(beam.support_left, MOVING_SUPPORTS)
+        on_end |= np.equal(place, 1.0) & among(beam.support_right, MOVING_SUPPORTS)
         on_beam = np.greater(place, 0.0) & np.less(place, 1.0) | on_end
         message = (
             "must be a share of the span above 0 and below 1, or the place of a free or elastic end"
         )
         require(on_beam, "Impact", "strike_position", place, message)
-        moves = np.isin(self.beam_model, WAVE_MODELS)
+        moves = among(self.beam_model, WAVE_MODELS)
         message = f"must be {' or '.join(WAVE_MODELS)} {OTHER_BEAM}"
         require(moves | is_plain(self), "Impact", "beam_model", self.beam_model, message)
         message = f"must be {' or '.join(BEAM_MODELS)} {OTHER_SECTION}"
-        sound = np.isin(self.beam_model, BEAM_MODELS) | np.equal(beam.shape, "rectangle")
+        sound = among(self.beam_model, BEAM_MODELS) | np.equal(beam.shape, "rectangle")
         require(sound, "Impact", "beam_model", self.beam_model, message)
         sprung = np.equal(beam.support_left, "elastic") | np.equal(beam.support_right, "elastic")
-        sound = np.isin(self.beam_model, BENDING_MODELS) | ~sprung
+        sound = among(self.beam_model, BENDING_MODELS) | ~sprung
         require(sound, "Impact", "beam_model", self.beam_model, f"must be {SPRUNG_BEAM}")
         resisted = sum(np.greater(getattr(beam, field), 0.0) for field in RESISTANCES)
-        sound = np.isin(self.beam_model, BENDING_MODELS) | np.equal(resisted, 0)
+        sound = among(self.beam_model, BENDING_MODELS) | np.equal(resisted, 0)
         require(sound, "Impact", "beam_model", self.beam_model, f"must be {RESISTED_BEAM}")
         alone = np.equal(strikes, 1) | np.equal(beam.foundation_stiffness, 0)
         require(alone, "Impact", "strikes", strikes, ON_FOUNDATION)
@@ -266,8 +266,8 @@ def corrected_impact(velocity: Quantity = 0.99) -> Impact:
 
 def is_plain(impact: Impact) -> Any:
     """Return whether both ends are hinges and mid-span is struck, of each run."""
-    left = np.isin(impact.beam.support_left, HINGES)
-    right = np.isin(impact.beam.support_right, HINGES)
+    left = among(impact.beam.support_left, HINGES)
+    right = among(impact.beam.support_right, HINGES)
     return left & right & np.equal(impact.strike_position, MID_SPAN)
 
 
