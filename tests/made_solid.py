@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.fem3d.comparison import simulate_beams
-from impactlab.fem3d.solver import quarter_mesh
+from impactlab.fem3d.solver import impact_mesh
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import flatten
@@ -27,7 +27,7 @@ DEPTH_OF_STRAIN = 3e-3
 
 @cache
 def _mesh():
-    return quarter_mesh(paper_impact(), element_size=2e-3)
+    return impact_mesh(paper_impact(), element_size=2e-3)
 
 
 def solid():

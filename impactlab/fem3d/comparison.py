@@ -19,7 +19,7 @@ from rich.table import Column, Table
 from impactlab.fem3d.figures.motion import animation
 from impactlab.fem3d.figures.run import draw_witness
 from impactlab.fem3d.page import write_comparison
-from impactlab.fem3d.plan import MODELS, RunPlan
+from impactlab.fem3d.plan import RunPlan, beam_models
 from impactlab.fem3d.solver import solve_on
 from impactlab.fem3d.solver.march import Progress
 from impactlab.fem3d.wing import SOLID, UNLIKE
@@ -98,13 +98,14 @@ def check_writable(folder: Path) -> None:
 
 
 def simulate_beams(impact: Impact, discretisation: Discretisation, duration: float) -> xr.Dataset:
-    """Return the answers of `simulate` for each of MODELS, on the dimension `beam_model`.
+    """Return the answers of `simulate` for all of beam_models, on the dimension `beam_model`.
 
     All take the leapfrog scheme, the only one that they share. duration: in s.
     """
     grid = replace(discretisation, scheme="leapfrog")
     runs = [
-        run_dataset(replace(impact, beam_model=model), grid, duration=duration) for model in MODELS
+        run_dataset(replace(impact, beam_model=model), grid, duration=duration)
+        for model in beam_models(impact)
     ]
     return xr.concat(runs, "beam_model", combine_attrs="override")
 

@@ -91,7 +91,7 @@ def write_deck(
     interval: float | None = None,
     plastic: bool = True,
 ) -> Path:
-    """Write the input deck of `impact` on `mesh` (see quarter_mesh), and return its path.
+    """Write the input deck of `impact` on `mesh` (see impact_mesh), and return its path.
 
     flavour: a name in FLAVOURS. duration: simulated time in s. interval: time between results in
     s, which is CalculiX's step, too (None: a 60th of the contact duration of an elastic
@@ -139,6 +139,7 @@ def write_deck(
         plastic=plastic,
         given=[(PARAMETERS[name], values[name]) for name in IMPACT_PARAMETERS if name in values],
         geometry="\n".join(_geometry(mesh, groups, impact.sphere.radius, chosen)),
+        held=_held(mesh),
         groups=groups,
         materials={"BEAM": (beam, beam.density), "SPHERE": (ball, sphere_density(mesh, impact))},
         stiffness=2.0 * modulus / (math.pi * radius * _OVERCLOSURE),  # in Pa/m
@@ -190,10 +191,13 @@ def _geometry(
         "SYMMETRY_X": mesh.symmetry_x.tolist(),
         "SYMMETRY_Y": mesh.symmetry_y.tolist(),
         "SUPPORT": mesh.support.tolist(),
+        "CLAMPED": mesh.clamped.tolist(),
         **{name: [node] for name, node in tracked.items()},
         "TRACKED": list(tracked.values()),
     }
     for name, members in sets.items():
+        if not members:
+            continue
         yield f"*NSET, NSET={name}"
         for start in range(0, len(members), _PER_LINE):
             yield ", ".join(str(node + 1) for node in members[start : start + _PER_LINE])
@@ -211,6 +215,17 @@ def _geometry(
     for name, faces in surfaces.items():
         yield f"*SURFACE, NAME={name}, TYPE=ELEMENT"
         yield from (f"{element + 1}, S{face}" for element, face in faces.tolist())
+
+
+def _held(mesh: Mesh) -> str:
+    """Return the sets of nodes that are held, in their directions, one data line each."""
+    sets = {
+        "SYMMETRY_X, 1, 1": mesh.symmetry_x,
+        "SYMMETRY_Y, 2, 2": mesh.symmetry_y,
+        "SUPPORT, 3, 3": mesh.support,
+        "CLAMPED, 1, 3": mesh.clamped,
+    }
+    return "\n".join(line for line, nodes in sets.items() if nodes.size)
 
 
 def _values(*entries: float) -> str:
@@ -248,6 +263,11 @@ _TEMPLATES.globals |= {
     "STRESS": _STRESS,
     "LENGTH": LENGTH,
     "VELOCITY": 1e3,  # mm/s per m/s
+    "ends": {
+        "pinned": "held at mid-depth",
+        "clamped": "held all over its face",
+        "free": "free",
+    },
     "ACCELERATION": 1e3,  # mm/s2 per m/s2
     "DENSITY": 1e-12,  # t/mm3 per kg/m3
 }

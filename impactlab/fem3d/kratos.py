@@ -52,7 +52,7 @@ def solve_on(
 ) -> xr.Dataset:
     """Solve one impact on `mesh` with Kratos Multiphysics; strains and rotations are small.
 
-    mesh: of solver.quarter_mesh. duration, time_step: in s. penalty: of the contact in N/m3,
+    mesh: of solver.impact_mesh. duration, time_step: in s. penalty: of the contact in N/m3,
     pressure over penetration. threads: they pay on an idle machine only. progress: called after
     each step with the share done.
 
@@ -62,12 +62,17 @@ def solve_on(
     converge, gives what it has computed until then, and the attribute `stopped` says why.
 
     Raises KratosMissingError when Kratos is not installed; ValueError when a number is not valid,
-    the mesh is of other bodies or a material has kinematic hardening; and PatchTooSmallError (a
+    the mesh is of other bodies or no quarter of a pinned beam, or a material has kinematic hardening; and PatchTooSmallError (a
     ValueError) when the contact leaves the patch of matched nodes.
     """
     for name, value in (("duration", duration), ("time_step", time_step), ("penalty", penalty)):
         positive("solve", name, value)
     check_mesh(mesh, impact)
+    if mesh.copies != 4 or mesh.ends != ("pinned", "pinned"):
+        raise ValueError(
+            "mesh: Kratos gets quarters of a pinned beam alone: set support_left: pinned, "
+            "support_right: pinned and strike_position: 0.5, or take impactlab's own solver"
+        )
     kratos = engine(integer("solve", "threads", threads, 1))
     run = Run(kratos, mesh, impact, duration=duration, time_step=time_step, penalty=penalty)
     run.go(progress)

@@ -9,20 +9,21 @@ from typing import Any
 from dask.system import CPU_COUNT
 from distributed.system import MEMORY_LIMIT
 
-from impactlab.fem3d.solver import MOST_THREADS, Cost, Mesh, estimate, least_cost, quarter_mesh
+from impactlab.fem3d.solver import MOST_THREADS, Cost, Mesh, estimate, impact_mesh, least_cost
 from impactlab.fem3d.solver.estimates import checked_patch, contact_radius
 from impactlab.figures.labels import counted
 from impactlab.model import cost
-from impactlab.model.case_table import case_table
+from impactlab.model.case_table import between_nodes, case_table
 from impactlab.model.checks import positive
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import Impact, paper_impact
+from impactlab.model.impact import Impact, is_plain, paper_impact
 from impactlab.model.parameters import Value, flatten, with_values
 from impactlab.model.quantities import amount, time
 from impactlab.solve import solve
+from impactlab.solver import LUMPED_MODELS
 from impactlab.study.schema.declarations import ImpactStudy
 
-MODELS = ("euler_bernoulli", "timoshenko", "spring_mass")  # in the order of tables and figures
+_MODELS = ("euler_bernoulli", "timoshenko", "spring_mass")  # in the order of tables and figures
 _COARSE = 101  # nodes that resolve the duration of a contact within some percent
 _LONGEST = 5e-3  # simulated time in s within which the paper's first contact ends at any velocity
 
@@ -41,6 +42,11 @@ class Case:
     discretisation: Discretisation
     longest: float
     held: dict[str, Value]
+
+
+def beam_models(impact: Impact) -> tuple[str, ...]:
+    """Return the models of the beam that have such ends and such a place of the strike."""
+    return tuple(name for name in _MODELS if is_plain(impact) or name not in LUMPED_MODELS)
 
 
 def case_of(
@@ -115,7 +121,7 @@ class RunPlan:
     def solved_mesh(self) -> Mesh:
         """Return the mesh, even if it may not fit memory."""
         size = self.element_size
-        return self.mesh or quarter_mesh(self.case.impact, element_size=size, patch=self.patch)
+        return self.mesh or impact_mesh(self.case.impact, element_size=size, patch=self.patch)
 
 
 def planned(
@@ -136,8 +142,10 @@ def planned(
             positive("witness", name, value)
     # Roughly: on a coarse grid, which is quick for any duration.
     nodes = min(case.discretisation.nodes, _COARSE)
+    if between_nodes(case.impact.strike_position, nodes):
+        nodes = case.discretisation.nodes
     coarse = replace(case.discretisation, nodes=nodes, scheme="leapfrog")
-    plain = replace(case.impact, beam_model=MODELS[0])
+    plain = replace(case.impact, beam_model=_MODELS[0])
     answers = solve(case_table(plain, coarse, duration=case.longest))
     first, usual = float(answers["contact_duration"][0]), case.longest
     if not math.isnan(first):
@@ -147,7 +155,8 @@ def planned(
     solid, mesh = cost_of(case.impact, size, simulated, patch)
     half = checked_patch(case.impact, size, patch)
     grid = replace(case.discretisation, scheme="leapfrog")
-    beams = case_table(case.impact, grid, duration=simulated, varied={"beam_model": MODELS})
+    models = beam_models(case.impact)
+    beams = case_table(case.impact, grid, duration=simulated, varied={"beam_model": models})
     beside = float(cost.work(beams).sum() / cost.A_SECOND)
     return RunPlan(case, size, half, simulated, first, usual, beside, solid, mesh)
 
@@ -166,7 +175,7 @@ def cost_of(
     least = least_cost(impact, element_size=size, duration=duration, patch=patch)
     if least.memory_bytes > MEMORY_LIMIT or least.cpu_seconds > longest:
         return least, None
-    mesh = quarter_mesh(impact, element_size=size, patch=patch)
+    mesh = impact_mesh(impact, element_size=size, patch=patch)
     return estimate(mesh, impact, duration=duration), mesh
 
 

@@ -19,7 +19,7 @@ import xarray as xr
 from numpy.lib.recfunctions import require_fields
 
 from impactlab.fem3d.plan import MOST_TIME, cost_of
-from impactlab.fem3d.solver import Cost, quarter_mesh
+from impactlab.fem3d.solver import Cost, impact_mesh
 from impactlab.fem3d.solver import solve as solve_alone
 from impactlab.fem3d.solver.compiler import COMPILER
 from impactlab.fem3d.solver.dataset import IMPACT_PARAMETERS
@@ -32,10 +32,10 @@ from impactlab.model.case_table import case_table
 from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import OTHER_SECTION, Impact, paper_impact
+from impactlab.model.impact import OTHER_SECTION, SPRUNG_BEAM, Impact, paper_impact
 from impactlab.model.parameters import with_values
 from impactlab.solve import solve as solve_cases
-from impactlab.solver import BEAM_MODELS
+from impactlab.solver import BEAM_MODELS, SUPPORTS
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.solver.types import CASE
 from impactlab.study.shard import Array, Columns
@@ -49,7 +49,7 @@ SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))  # th
 SOLID_MODEL = len(BEAM_MODELS)  # number of the 3-D FE model, after those of the kernels
 _BEAM_MODELS_ONLY = (
     *("contact", "load", "compliance", "bending_compliance"),
-    *("shear_coefficient", "shear_stiffness"),
+    *("shear_coefficient", "shear_stiffness", "axis_held_left", "axis_held_right"),
     *("nodes", "points", "rule", "scheme", "courant"),
 )
 """Fields that the 3-D FE model does not use."""
@@ -80,6 +80,9 @@ def table(
         return records
     if records["beam_shape"][solid].any():
         raise ValueError(f"beam_model = {SOLID!r}: must be another one {OTHER_SECTION}")
+    for side in ("left", "right"):
+        if np.any(records[f"support_{side}"][solid] == SUPPORTS.index("elastic")):
+            raise ValueError(f"beam_model = {SOLID!r}: must be {SPRUNG_BEAM}")
     records["beam_model"][solid] = SOLID_MODEL
     for name in _BEAM_MODELS_ONLY:
         records[name][solid] = 0
@@ -103,7 +106,9 @@ def is_solid(cases: Array) -> Array:
 
 def _impact_of(case: Any) -> Impact:
     """Return the impact of a record of the 3-D FE model."""
-    values = {name: case[name].item() for name in IMPACT_PARAMETERS}
+    values: dict[str, Any] = {name: case[name].item() for name in IMPACT_PARAMETERS}
+    for name in ("support_left", "support_right"):
+        values[name] = SUPPORTS[int(values[name])]
     return with_values(paper_impact(), Discretisation(), values | {"beam_model": SOLID})[0]
 
 
@@ -163,7 +168,7 @@ def solve_one(case: Any, samples: int) -> dict[str, Any]:
     options: dict[str, Any] = {"element_size": size, "duration": duration, "samples": _STEPS}
     begun = time.thread_time()
     try:
-        patch = quarter_mesh(solid_impact, element_size=size).patch
+        patch = impact_mesh(solid_impact, element_size=size).patch
         while "patch_needed" in (run := solve_alone(solid_impact, patch=patch, **options)).attrs:
             patch = 1.5 * patch
             again = "a 3-D run begins again with a patch of %.3g mm: %s"

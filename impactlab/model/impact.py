@@ -29,6 +29,8 @@ from impactlab.solver.contact import LAWS
 
 MODELS = (*BEAM_MODELS, *wings.models())
 """Names of all models of the beam."""
+MOVING_MODELS = (*WAVE_MODELS, *wings.models())
+"""Those of which every place moves, with any ends, struck anywhere."""
 MID_SPAN = 0.5
 """Usual place of the strike over the span."""
 HINGES = ("pinned", "roller")
@@ -157,8 +159,8 @@ class Impact:
             "must be a share of the span above 0 and below 1, or the place of a free or elastic end"
         )
         require(on_beam, "Impact", "strike_position", place, message)
-        moves = among(self.beam_model, WAVE_MODELS)
-        message = f"must be {' or '.join(WAVE_MODELS)} {OTHER_BEAM}"
+        moves = among(self.beam_model, MOVING_MODELS)
+        message = f"must be {' or '.join(MOVING_MODELS)} {OTHER_BEAM}"
         require(moves | is_plain(self), "Impact", "beam_model", self.beam_model, message)
         message = f"must be {' or '.join(BEAM_MODELS)} {OTHER_SECTION}"
         sound = among(self.beam_model, BEAM_MODELS) | np.equal(beam.shape, "rectangle")

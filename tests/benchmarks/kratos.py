@@ -56,7 +56,7 @@ def main() -> None:
     given = parser.parse_args()
     impact = il.paper_impact(velocity=0.99)
     size, coarsest, ratio = given.element_size, given.coarsest, given.ratio
-    mesh = solid.quarter_mesh(impact, element_size=size, coarsest=coarsest, ratio=ratio)
+    mesh = solid.impact_mesh(impact, element_size=size, coarsest=coarsest, ratio=ratio)
     # Where nodes match, Kratos' dual multipliers act on pairs of nodes: so does our contact here.
     mesh = replace(mesh, bulge=np.zeros_like(mesh.bulge))
     system.RULE = np.eye(4), np.eye(4)

@@ -13,7 +13,7 @@ from impactlab.fem3d.solver.compiler import COMPILER
 from impactlab.fem3d.solver.evaluation import fields, plastic_responses, responses
 from impactlab.fem3d.solver.frames import FRAMES, Frames
 from impactlab.fem3d.solver.march import Energies, History, March, Progress
-from impactlab.fem3d.solver.mesh import Mesh, check_mesh, quarter_mesh
+from impactlab.fem3d.solver.mesh import Mesh, check_mesh, impact_mesh
 from impactlab.fem3d.solver.system import System, ThreadPool
 from impactlab.model.bodies import RESISTANCES
 from impactlab.model.checks import integer, positive
@@ -28,8 +28,8 @@ from impactlab.variables import described, provenance
 def solve(
     impact: Impact, *, element_size: float, patch: float | None = None, **options: Any
 ) -> xr.Dataset:
-    """Solve one impact as solve_on, on the mesh of quarter_mesh; element_size, patch: in m."""
-    mesh = quarter_mesh(impact, element_size=element_size, patch=patch)
+    """Solve one impact as solve_on, on the mesh of impact_mesh; element_size, patch: in m."""
+    mesh = impact_mesh(impact, element_size=element_size, patch=patch)
     return solve_on(mesh, impact, **options)
 
 
@@ -103,7 +103,8 @@ OWN = {
     "gravity_work": ("J", "work of gravity on the sphere"),
     "element_size": ("m", "size of the elements about the contact"),
     "patch": ("m", "half the side of the square in which nodes are matched"),
-    "number_of_elements": ("1", "elements of the quarter model"),
+    "number_of_elements": ("1", "elements of the part that is solved"),
+    "copies": ("1", "parts like it that make up beam and sphere: 4 quarters or 2 halves"),
     "time_step": ("s", "time step at the beginning"),
     "number_of_steps": ("1", "time steps taken"),
 }
@@ -116,14 +117,14 @@ _COMMENTS = {
     "number_of_contacts": "without pauses in which a wave does not cross the patch twice there and "
     "back",
     "sphere_displacement": "of the sphere's centre of mass",
-    "midspan_deflection": "of the axis, at mid-depth and mid-width",
+    "midspan_deflection": "of the axis below the impact, at mid-depth and mid-width",
 }
 IMPACT_PARAMETERS = [
     name
     for name, entry in PARAMETERS.items()
     if entry.path[0] == "impact"
     and name not in ("contact", *TIMOSHENKO_OPTIONS, "beam_model", "load", "shear_coefficient")
-    and name not in ("strike_position", "support_left", "support_right", *SECTION, *RESISTANCES)
+    and name not in (*SECTION, *RESISTANCES)
     and "stiffness_" not in name
 ]
 """Parameters of an impact, without those of the beam models alone."""
@@ -170,6 +171,7 @@ def to_dataset(system: System, impact: Impact, history: History, samples: int) -
             "element_size": mesh.element_size,
             "patch": mesh.patch,
             "number_of_elements": len(mesh.elements),
+            "copies": mesh.copies,
             "number_of_steps": len(history.moments),
             "time_step": history.moments[1].time - history.moments[0].time,
             "duration": last,

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from impactlab.model.bodies import Beam
 from impactlab.model.checks import positive
-from impactlab.model.impact import Impact
+from impactlab.model.impact import HINGES, MID_SPAN, Impact
 from impactlab.model.material import Material
 from impactlab.verification.solutions import hertz
 
@@ -32,6 +33,18 @@ def checked_size(impact: Impact, element_size: float) -> float:
     return size
 
 
+def ends(beam: Beam) -> tuple[str, str]:
+    """Return what holds the left and the right end; a roller is pinned, for it moves along."""
+    left, right = beam.support_left, beam.support_right
+    return "pinned" if left in HINGES else left, "pinned" if right in HINGES else right
+
+
+def copies(impact: Impact) -> int:
+    """Return the number of equal parts of beam and sphere: 4 quarters or 2 halves."""
+    left, right = ends(impact.beam)
+    return 4 if left == right and impact.strike_position == MID_SPAN else 2
+
+
 def contact_radius(impact: Impact) -> float:
     """Return the largest contact radius in m to expect, of an elastic and a plastic half-space.
 
@@ -48,8 +61,9 @@ def contact_radius(impact: Impact) -> float:
 
 def largest_patch(impact: Impact) -> float:
     """Return the largest patch in m that fits on beam and sphere."""
-    beam = impact.beam
-    return min(0.9 * beam.width / 2.0, 0.45 * impact.sphere.radius, beam.span / 4.0)
+    beam, place = impact.beam, impact.strike_position
+    shorter = min(place, 1.0 - place) * beam.span
+    return min(0.9 * beam.width / 2.0, 0.45 * impact.sphere.radius, shorter / 2.0)
 
 
 def uniform(size: float, length: float) -> int:
@@ -123,16 +137,16 @@ def estimate(mesh: Mesh, impact: Impact, *, duration: float) -> Cost:
 def least_cost(
     impact: Impact, *, element_size: float, duration: float, patch: float | None = None
 ) -> Cost:
-    """Return the least cost of a mesh without making it; arguments as those of quarter_mesh.
+    """Return the least cost of a mesh without making it; arguments as those of impact_mesh.
 
     A cube of elements on either side of the contact, and the beam in the largest that there are:
-    its transitions, which are left out, may be more. Raises ValueError as quarter_mesh.
+    its transitions, which are left out, may be more. Raises ValueError as impact_mesh.
     """
     size = checked_size(impact, element_size)
-    beam = impact.beam
+    beam, parts = impact.beam, copies(impact)
     half = checked_patch(impact, size, patch)
-    far = beam.span / 4.0 * beam.section.area / max(beam.depth / 6.0, size) ** 3
-    near = 2.0 * (half / size) ** 3
+    far = beam.span / parts * beam.section.area / max(beam.depth / 6.0, size) ** 3
+    near = 8.0 / parts * (half / size) ** 3
     fastest = max(math.sqrt(steel.youngs_modulus / density) for steel, density in _metals(impact))
     steps = int(duration * fastest / size) + 1
     seconds = steps * (near * FULL_SECONDS + far * ONE_POINT_SECONDS)

@@ -157,7 +157,7 @@ def plastic_responses(mesh: Mesh, impact: Impact, strain: Floats) -> dict[str, f
     points = mesh.nodes[mesh.elements, 0]
     beam = mesh.body == BEAM
     coarse = strain[~mesh.full]
-    remote = beam & (points.mean(axis=1) > impact.beam.depth)
+    remote = beam & (np.abs(points.mean(axis=1)) > impact.beam.depth)
     plastic = points[beam & (strain > PLASTIC_ZONE_STRAIN)]
     ends = np.stack([plastic.min(axis=1), plastic.max(axis=1)], axis=1)  # of lengths of the beam
     ends = np.unique(np.round(ends, 12), axis=0)
@@ -166,7 +166,7 @@ def plastic_responses(mesh: Mesh, impact: Impact, strain: Floats) -> dict[str, f
         "remote_plastic_strain": float(strain[remote].max(initial=0.0)),
         "sphere_plastic_strain": float(strain[~beam].max(initial=0.0)),
         "one_point_plastic_strain": float(coarse.max(initial=0.0)),
-        "plastic_zone_length": float(2.0 * np.sum(ends[:, 1] - ends[:, 0])),
+        "plastic_zone_length": float(0.5 * mesh.copies * np.sum(ends[:, 1] - ends[:, 0])),
     }
 
 
@@ -176,21 +176,32 @@ LIMIT = 0.002  # PEEQ at the border of the zone: the strain of the usual proof s
 def plastic_reach(run: xr.Dataset, along: int, limit: float = LIMIT) -> float:
     """Return how far from the impact's centre the PEEQ of the beam exceeds `limit`, in m.
 
-    run: as solve gives it. along: 0, the beam on its struck surface; 2, the depth at mid-span; both
-    at mid-width. In the shape before the impact: the outermost place where the line through the
-    means of the elements comes down to the limit; 0 where none is above it, the last element's
-    middle where all are.
+    run: as solve gives it. along: 0, the beam on its struck surface; 2, the depth below it; both
+    at mid-width, on the side of the impact where that is farther. In the shape before the impact:
+    the outermost place where the line through the means of the elements comes down to the limit; 0
+    where none is above it, the last element's middle where all are.
     """
     points = run["node_position"].values[run["element_nodes"].values]
-    edge = 1e-6 * float(run["element_size"])
+    edge, x = 1e-6 * float(run["element_size"]), points[:, :, 0]
     row = (run["body"].values == BEAM) & (points[:, :, 1].min(axis=1) < edge)
     if along == 0:
         row &= points[:, :, 2].max(axis=1) > -edge
     else:
-        row &= points[:, :, 0].min(axis=1) < edge
-    reach = np.abs(points[row, :, along].mean(axis=1))
+        row &= np.abs(x).min(axis=1) < edge
+    beyond = x.mean(axis=1) > 0.0
+    strain = run["equivalent_plastic_strain"].values
+    sides = [
+        (np.abs(points[side, :, along].mean(axis=1)), strain[side])
+        for side in (row & beyond, row & ~beyond)
+        if side.any()
+    ]
+    return max(_reach(*side, limit) for side in sides)
+
+
+def _reach(reach: Floats, strain: Floats, limit: float) -> float:
+    """Return where the strain of elements that far away, in m, comes down to the limit."""
     order = np.argsort(reach)
-    reach, strain = reach[order], run["equivalent_plastic_strain"].values[row][order]
+    reach, strain = reach[order], strain[order]
     above = np.flatnonzero(strain > limit)
     if not above.size:
         return 0.0

@@ -18,7 +18,7 @@ from impactlab.types import Floats
 
 
 class Moment(NamedTuple):
-    """At the beginning of a step: time in s, contact force of all four quarters in N.
+    """At the beginning of a step: time in s, contact force of all copies of the mesh in N.
 
     Displacements in m, positive downwards: of the sphere's centre of mass and of its pole (from as
     high as its faces bulge), of the beam's axis and of its top below the impact. velocity: of the
@@ -35,7 +35,7 @@ class Moment(NamedTuple):
 
 
 class Energies(NamedTuple):
-    """At a checkpoint, of all four quarters, in J (time in s), by the names in datasets.
+    """At a checkpoint, of all copies of the mesh, in J (time in s), by the names in datasets.
 
     strain_work: of the stresses in the elements, kept and dissipated. plastic_work: dissipated of
     it. hourglass_work: against hourglassing. contact_work: on pairs that overlap, kept and lost.
@@ -134,14 +134,14 @@ class March:
             self._take()
         system, mesh, history = self.system, self.system.mesh, self.history
         before = system.v.copy()
-        worked = 4.0 * np.sum([group.energies() for group in system.groups], axis=0)
+        worked = mesh.copies * np.sum([group.energies() for group in system.groups], axis=0)
         self._take()
         # Energies at the start of this step, kinetic by the velocities around it.
         moment = history.moments[-1]
-        kinetic = 2.0 * float(np.sum(system.mass[:, None] * before * system.v))
+        kinetic = 0.5 * mesh.copies * float(np.sum(system.mass[:, None] * before * system.v))
         gravity = self.impact.sphere.total_mass * self.impact.gravity * moment.sphere
         work, plastic, hourglass = worked[[WORK, DISSIPATED, HOURGLASS_WORK]].tolist()
-        contact = 4.0 * self._pushed
+        contact = mesh.copies * self._pushed
         history.energies.append(
             Energies(moment.time, kinetic, work, plastic, hourglass, contact, gravity)
         )
@@ -170,7 +170,7 @@ class March:
                 message += f"; beam and sphere have room for {room:.4g} m"
             self.history.patch_needed = needed
             raise PatchTooSmallError(message)
-        force = 4.0 * impulse / self._velocity_dt
+        force = mesh.copies * impulse / self._velocity_dt
         mass = self.impact.sphere.total_mass
         self._velocity += self._velocity_dt * (self.impact.gravity - force / mass)
         moment = Moment(self._time, force, self._sphere, pole, axis, top, self._velocity)

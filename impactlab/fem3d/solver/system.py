@@ -1,4 +1,4 @@
-"""The quarter model in motion: elements in SIMD blocks, one step on threads, bounds.
+"""The 3-D model in motion: elements in SIMD blocks, one step on threads, bounds.
 
 Each node has one row of forces per piece of a group of elements that it belongs to. Two threads
 never add to the same row, and the order of all sums is that of the mesh: a group is cut into the
@@ -220,6 +220,7 @@ class System:
         self.inverse_mass = np.repeat(1.0 / self.mass[:, None], 3, axis=1)
         for axis, held in enumerate((mesh.symmetry_x, mesh.symmetry_y, mesh.support)):
             self.inverse_mass[held, axis] = 0.0
+        self.inverse_mass[mesh.clamped] = 0.0
         sphere = np.unique(mesh.elements[mesh.body == SPHERE])
         self.v[sphere, 2] = -impact.velocity
         self.pull = np.zeros(len(mesh.nodes))

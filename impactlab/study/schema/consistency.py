@@ -19,6 +19,7 @@ from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTI
 from impactlab.model.impact import (
     HINGES,
     MID_SPAN,
+    MOVING_MODELS,
     OTHER_BEAM,
     RESISTED_BEAM,
     SPRUNG_BEAM,
@@ -26,7 +27,7 @@ from impactlab.model.impact import (
 from impactlab.model.parameters import PARAMETERS, SECTION, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.model.quantities import shown
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS, RESISTANCES, WAVE_MODELS
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS, RESISTANCES
 from impactlab.study.schema.declarations import FunctionStudy, ImpactStudy, StudyFile
 from impactlab.validation.errors import unknown
 from impactlab.validation.refusals import Base, refused_corner
@@ -217,8 +218,8 @@ def _other_beams(file: StudyFile, models: set[Value]) -> Reasons:
     }
     if supports <= set(HINGES) and set(places) == {MID_SPAN}:
         return
-    if models - set(WAVE_MODELS):
-        reason = f"must be {' or '.join(WAVE_MODELS)} {OTHER_BEAM}"
+    if models - set(MOVING_MODELS):
+        reason = f"must be {' or '.join(MOVING_MODELS)} {OTHER_BEAM}"
         yield key_of("beam_model", sampling), reason
     elif "elastic" in supports and models - set(BENDING_MODELS):
         yield key_of("beam_model", sampling), f"must be {SPRUNG_BEAM}"

@@ -7,7 +7,7 @@ import pytest
 import impactlab as il
 from impactlab.fem3d.figures.motion import animation
 from impactlab.fem3d.figures.run import faces
-from impactlab.fem3d.solver import quarter_mesh, solve_on
+from impactlab.fem3d.solver import impact_mesh, solve_on
 from impactlab.fem3d.solver.frames import FRAMES
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousands of elements")
@@ -17,7 +17,7 @@ IMPACT = il.paper_impact(15.0)
 
 @pytest.fixture(scope="module")
 def runs():
-    mesh = quarter_mesh(IMPACT, element_size=4e-3)
+    mesh = impact_mesh(IMPACT, element_size=4e-3)
     options = {"duration": 6e-5, "samples": 101}
     return [solve_on(mesh, IMPACT, frames=frames, **options) for frames in (False, True)]
 

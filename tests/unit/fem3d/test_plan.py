@@ -9,7 +9,7 @@ import pytest
 
 from impactlab.fem3d import plan as plans
 from impactlab.fem3d.plan import USUAL_TIME, case_of, planned
-from impactlab.fem3d.solver import estimate, least_cost, quarter_mesh
+from impactlab.fem3d.solver import estimate, impact_mesh, least_cost
 from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.study.schema.readers import read_impacts
 from impactlab.validation.errors import StudyError
@@ -75,7 +75,7 @@ def test_the_papers_case_takes_its_duration_and_about_a_minute(quick):
     found = planned(quick)
     assert found.duration == 0.45e-3  # as in the paper
     assert found.cost.cpu_seconds <= USUAL_TIME
-    finer = quarter_mesh(quick.impact, element_size=found.element_size / 2.5)
+    finer = impact_mesh(quick.impact, element_size=found.element_size / 2.5)
     assert estimate(finer, quick.impact, duration=found.duration).cpu_seconds > USUAL_TIME
     assert not found.problem(workers=1)
     # a smaller contact takes smaller elements
@@ -89,7 +89,7 @@ def test_the_papers_case_takes_its_duration_and_about_a_minute(quick):
     assert np.isnan(unfinished.first_contact)
     # the floor of the cost lies below the cost
     for size in (2e-3, 1e-3, 5e-4):
-        mesh = quarter_mesh(quick.impact, element_size=size)
+        mesh = impact_mesh(quick.impact, element_size=size)
         cost = estimate(mesh, quick.impact, duration=1e-3)
         floor = least_cost(quick.impact, element_size=size, duration=1e-3)
         assert floor.elements < cost.elements
@@ -107,7 +107,7 @@ def test_a_moment_is_no_reason_for_a_mesh_without_bounds(quick):
 
 
 def test_what_does_not_fit_memory_is_told_without_a_mesh(quick, monkeypatch):
-    monkeypatch.setattr(plans, "quarter_mesh", None)
+    monkeypatch.setattr(plans, "impact_mesh", None)
     found = planned(quick, element_size=1e-6)
     problem = found.problem(workers=2)
     assert "--element-size 0.001 mm: about" in problem

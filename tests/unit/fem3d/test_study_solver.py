@@ -106,7 +106,7 @@ def test_the_cost_counts_what_is_solved_once(study):
     found = estimate(study, Path("no"), workers=2)
     impact = il.paper_impact()
     seconds = [
-        solid.estimate(solid.quarter_mesh(impact, element_size=h), impact, duration=2e-5)
+        solid.estimate(solid.impact_mesh(impact, element_size=h), impact, duration=2e-5)
         for h in (3e-3, 4e-3)
     ]
     assert found.seconds == pytest.approx(sum(each.cpu_seconds for each in seconds), rel=0.2)
@@ -170,9 +170,9 @@ def test_the_answers_depend_on_the_sources_of_both():
 def test_what_does_not_fit_memory_is_priced_without_a_mesh(monkeypatch):
     def watched(impact, *, element_size):
         assert element_size > 1e-4
-        return solid.quarter_mesh(impact, element_size=element_size)
+        return solid.impact_mesh(impact, element_size=element_size)
 
-    monkeypatch.setattr(witness, "quarter_mesh", watched)
+    monkeypatch.setattr(witness, "impact_mesh", watched)
     fine = TEXT.replace("[4 mm, 3 mm]", "[0.01 mm]")
     found = estimate(study_of_text("fine", fine), Path("no"), workers=1)
     assert found.memory > 1e10

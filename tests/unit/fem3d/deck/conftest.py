@@ -6,7 +6,7 @@ import decks
 import pytest
 
 from impactlab.fem3d.deck import write_deck
-from impactlab.fem3d.solver import quarter_mesh
+from impactlab.fem3d.solver import impact_mesh
 from impactlab.model.bodies import Beam
 from impactlab.model.impact import paper_impact
 
@@ -21,7 +21,7 @@ def impact():
 
 @pytest.fixture(scope="session")
 def mesh(impact):
-    return quarter_mesh(impact, element_size=3e-3, ratio=2.0, coarsest=0.02)
+    return impact_mesh(impact, element_size=3e-3, ratio=2.0, coarsest=0.02)
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import pytest
 import whole_sphere
 
 from impactlab.fem3d.deck import write_deck
-from impactlab.fem3d.solver import quarter_mesh
+from impactlab.fem3d.solver import impact_mesh
 from impactlab.model.bodies import Beam, Sphere
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.verification.solutions import hertz
@@ -101,7 +101,7 @@ def test_elastic_impact_on_a_large_block_is_hertzs(tmp_path):
     path = write_deck(
         tmp_path / "hertz.inp",
         this,
-        quarter_mesh(this, element_size=1e-3, ratio=2.0, coarsest=1.0, patch=2e-3),
+        impact_mesh(this, element_size=1e-3, ratio=2.0, coarsest=1.0, patch=2e-3),
         flavour="calculix",
         duration=1.1 * duration,
         interval=duration / 20.0,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from impactlab.fem3d.solver import quarter_mesh
+from impactlab.fem3d.solver import impact_mesh
 from impactlab.model.impact import paper_impact
 
 
@@ -13,4 +13,4 @@ def impact():
 
 @pytest.fixture(scope="package")
 def mesh(impact):
-    return quarter_mesh(impact, element_size=1e-3, ratio=2.0, coarsest=20e-3)
+    return impact_mesh(impact, element_size=1e-3, ratio=2.0, coarsest=20e-3)

@@ -55,6 +55,6 @@ def test_the_sphere_loses_what_the_force_takes(theirs, impact):
 
 
 def test_a_contact_that_leaves_the_patch_is_told(impact):
-    small = solid.quarter_mesh(impact, element_size=0.4e-3, patch=0.8e-3, ratio=2.0, coarsest=20e-3)
+    small = solid.impact_mesh(impact, element_size=0.4e-3, patch=0.8e-3, ratio=2.0, coarsest=20e-3)
     with pytest.raises(solid.PatchTooSmallError, match=r"above 0\.0008 m"):
         kratos.solve_on(small, impact, duration=8e-5)

@@ -7,7 +7,7 @@ import pytest
 
 from impactlab.fem3d import kratos
 from impactlab.fem3d.kratos import Run, engine
-from impactlab.fem3d.solver import quarter_mesh
+from impactlab.fem3d.solver import impact_mesh
 
 pytestmark = pytest.mark.kratos
 
@@ -75,7 +75,7 @@ def stubborn(kratos, failures):
 
 
 def history(impact, failures, duration=26e-6):
-    mesh = quarter_mesh(impact, element_size=2e-3, ratio=2.0, coarsest=30e-3)
+    mesh = impact_mesh(impact, element_size=2e-3, ratio=2.0, coarsest=30e-3)
     kratos = stubborn(engine(1), failures)
     run = Run(kratos, mesh, impact, duration=duration, time_step=8e-6, penalty=1e15)
     run.go(None)

@@ -5,7 +5,7 @@ import pytest
 
 from impactlab.fem3d.solver.elements import FULL_MEAN, MEAN, add_forces
 from impactlab.fem3d.solver.hexahedron import SCRATCH, W
-from impactlab.fem3d.solver.mesh import brick
+from impactlab.fem3d.solver.lattice import brick
 from impactlab.fem3d.solver.system import MOST_THREADS, ForceAssembly, Group
 from impactlab.model.material import Material
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import whole_sphere
 
-from impactlab.fem3d.solver import quarter_mesh, solve, solve_on
+from impactlab.fem3d.solver import impact_mesh, solve, solve_on
 from impactlab.model.bodies import Beam, Sphere
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.material import Material
@@ -37,7 +37,7 @@ def test_a_sphere_on_a_large_block_is_hertz(element_size, ratio):
     impact = hertz_impact()
     peak, duration = whole_sphere.impact(impact)
     assert peak == pytest.approx(hertz.peak_force(*hertz.arguments(impact)), rel=0.02)
-    mesh = quarter_mesh(impact, element_size=element_size, ratio=ratio, coarsest=BLOCK / 8)
+    mesh = impact_mesh(impact, element_size=element_size, ratio=ratio, coarsest=BLOCK / 8)
     answer = solve_on(mesh, impact, duration=1.1 * duration, threads=2)
     assert float(answer["peak_force"]) == pytest.approx(peak, rel=0.01)
     assert float(answer["contact_duration"]) == pytest.approx(duration, rel=0.01)

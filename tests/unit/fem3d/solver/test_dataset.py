@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.fem3d.solver import quarter_mesh, solve_on
+from impactlab.fem3d.solver import impact_mesh, solve_on
 from impactlab.simulate import run_dataset
 from impactlab.solver import outputs
 from impactlab.variables import HISTORIES, RESPONSES, STATUS_FLAGS
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousand
 
 @pytest.fixture(scope="module")
 def mesh():
-    return quarter_mesh(il.paper_impact(5.0), element_size=2e-3)
+    return impact_mesh(il.paper_impact(5.0), element_size=2e-3)
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d.solver.elements import DISSIPATED, HOURGLASS_WORK, WORK
-from impactlab.fem3d.solver.mesh import brick
+from impactlab.fem3d.solver.lattice import brick
 from impactlab.model.material import Material
 
 G, K = 200e9 / 2.6, 200e9 / 1.2

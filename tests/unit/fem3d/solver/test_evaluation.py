@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 import impactlab as il
-from impactlab.fem3d.solver import quarter_mesh
+from impactlab.fem3d.solver import impact_mesh
 from impactlab.fem3d.solver.evaluation import contacts, first_duration, peak, plastic_reach
 
 
@@ -41,7 +41,7 @@ def test_a_contact_at_the_end_has_no_end():
 @pytest.fixture(scope="module")
 def planted():
     """A strain that falls along a line in x, on the top elements and twice as far below."""
-    mesh = quarter_mesh(il.paper_impact(), element_size=2e-3)
+    mesh = impact_mesh(il.paper_impact(), element_size=2e-3)
     centres = mesh.nodes[mesh.elements].mean(axis=1)
 
     def build(reach, peak=0.01):

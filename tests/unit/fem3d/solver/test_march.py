@@ -6,7 +6,7 @@ import numba
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver import quarter_mesh, solve_on
+from impactlab.fem3d.solver import impact_mesh, solve_on
 from impactlab.fem3d.solver.march import March
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE
 from impactlab.fem3d.solver.system import System, ThreadPool
@@ -18,7 +18,7 @@ IMPACT = paper_impact()
 
 @pytest.fixture(scope="module")
 def mesh():
-    return quarter_mesh(IMPACT, element_size=1.5e-3)
+    return impact_mesh(IMPACT, element_size=1.5e-3)
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +61,7 @@ def test_beam_and_sphere_exchange_momentum_and_lose_none(mesh, marched):
 
 
 def test_a_contact_that_leaves_the_patch_stops_the_run_and_tells_the_radius():
-    small = quarter_mesh(IMPACT, element_size=0.5e-3, patch=1e-3, coarsest=8e-3, ratio=2.0)
+    small = impact_mesh(IMPACT, element_size=0.5e-3, patch=1e-3, coarsest=8e-3, ratio=2.0)
     run = solve_on(small, IMPACT, duration=1e-3)
     needed = run.attrs["patch_needed"]
     assert 1.5e-3 < needed < 6e-3  # the contact's radius is 1.8 mm in the end

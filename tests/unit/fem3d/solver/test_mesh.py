@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from impactlab.fem3d.solver import estimate, quarter_mesh
+from impactlab.fem3d.solver import estimate, impact_mesh
 from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.fem3d.solver.mesh import BEAM, CORNERS, SPHERE, graded
 from impactlab.model.impact import paper_impact
@@ -35,7 +35,7 @@ FACES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (
 
 @pytest.fixture(scope="module")
 def mesh():
-    return quarter_mesh(paper_impact(), element_size=1.5e-3)
+    return impact_mesh(paper_impact(), element_size=1.5e-3)
 
 
 def volumes(mesh):
@@ -63,7 +63,7 @@ def test_beam_fills_its_quarter_and_the_sphere_nearly_so(mesh):
     assert volume[mesh.body == BEAM].sum() == pytest.approx(SPAN / 2 * WIDTH / 2 * DEPTH)
     ball = np.pi / 3 * RADIUS**3
     coarse = 1.0 - volume[mesh.body == SPHERE].sum() / ball
-    fine = quarter_mesh(paper_impact(), element_size=0.75e-3, coarsest=DEPTH / 12)
+    fine = impact_mesh(paper_impact(), element_size=0.75e-3, coarsest=DEPTH / 12)
     finer = 1.0 - volumes(fine)[fine.body == SPHERE].sum() / ball
     assert 0.0 < finer < coarse < 0.02
     # every node is used and no two are in one place
@@ -124,7 +124,7 @@ def test_an_inverted_element_is_named(mesh):
 def test_no_layer_is_much_thinner_than_the_elements_of_the_contact(depth):
     paper = paper_impact()
     impact = replace(paper, beam=replace(paper.beam, depth=1e-3 * depth))
-    fine = quarter_mesh(impact, element_size=1e-3, patch=3e-3)
+    fine = impact_mesh(impact, element_size=1e-3, patch=3e-3)
     layers = np.diff(np.unique(fine.nodes[fine.elements[fine.body == BEAM], 2]))
     assert layers.min() > 0.65e-3
     assert layers.sum() == pytest.approx(1e-3 * depth)
@@ -134,18 +134,18 @@ def test_an_estimated_patch_gives_up_its_margin_where_the_bodies_end():
     paper = paper_impact(velocity=20.0)
     narrow = replace(paper, beam=replace(paper.beam, width=0.03))
     assert contact_radius(narrow) < 0.9 * 0.015 < 14e-3  # what 1.25 of it would be
-    assert quarter_mesh(narrow, element_size=1e-3).patch == pytest.approx(13e-3)
+    assert impact_mesh(narrow, element_size=1e-3).patch == pytest.approx(13e-3)
     narrower = replace(paper, beam=replace(paper.beam, width=0.02))
     assert contact_radius(narrower) > 0.9 * 0.01
     with pytest.raises(ValueError, match=r"must be at most 0\.009 m to fit"):
-        quarter_mesh(narrower, element_size=1e-3)
+        impact_mesh(narrower, element_size=1e-3)
     # a patch beyond the bodies is refused
     with pytest.raises(ValueError, match=r"mesh\.patch = 0\.0"):
-        quarter_mesh(paper_impact(), element_size=1e-3, patch=0.02)
+        impact_mesh(paper_impact(), element_size=1e-3, patch=0.02)
 
 
 def test_a_faster_impact_has_a_wider_patch_and_its_middle_fully_integrated():
-    slow, fast = (quarter_mesh(paper_impact(v), element_size=1.5e-3) for v in (0.99, 10.0))
+    slow, fast = (impact_mesh(paper_impact(v), element_size=1.5e-3) for v in (0.99, 10.0))
     assert fast.patch > 2.0 * slow.patch
     centres = fast.nodes[fast.elements].mean(axis=1)
     middle = (fast.body == BEAM) & (centres[:, 0] < DEPTH)
@@ -156,7 +156,7 @@ def test_a_faster_impact_has_a_wider_patch_and_its_middle_fully_integrated():
 def test_cost_grows_with_the_fourth_power_at_most(mesh):
     coarse = estimate(mesh, paper_impact(), duration=1e-3)
     fine = estimate(
-        quarter_mesh(paper_impact(), element_size=0.75e-3), paper_impact(), duration=1e-3
+        impact_mesh(paper_impact(), element_size=0.75e-3), paper_impact(), duration=1e-3
     )
     assert coarse.elements == len(mesh.elements)
     assert fine.steps == pytest.approx(2 * coarse.steps, rel=0.1)

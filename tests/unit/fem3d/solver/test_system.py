@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.fem3d.solver import estimate, quarter_mesh, solve_on
+from impactlab.fem3d.solver import estimate, impact_mesh, solve_on
 from impactlab.fem3d.solver.march import SAFETY
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE, nodal_masses
 from impactlab.fem3d.solver.system import System, ThreadPool, critical_step
@@ -19,7 +19,7 @@ IMPACT = paper_impact()
 
 @pytest.fixture(scope="module")
 def mesh():
-    return quarter_mesh(IMPACT, element_size=1.5e-3)
+    return impact_mesh(IMPACT, element_size=1.5e-3)
 
 
 def test_a_quarter_weighs_a_quarter_and_the_sphere_what_it_is_said_to(mesh):
