@@ -61,6 +61,7 @@ def solid():
             "element_size": mesh.element_size,
             "patch": mesh.patch,
             "number_of_elements": len(mesh.elements),
+            "copies": mesh.copies,
             "duration": float(time[-1]),
             **{name: flatten(paper_impact(), Discretisation())[name] for name in _GIVEN},
         },

@@ -62,8 +62,9 @@ def solve_on(
     converge, gives what it has computed until then, and the attribute `stopped` says why.
 
     Raises KratosMissingError when Kratos is not installed; ValueError when a number is not valid,
-    the mesh is of other bodies or no quarter of a pinned beam, or a material has kinematic hardening; and PatchTooSmallError (a
-    ValueError) when the contact leaves the patch of matched nodes.
+    the mesh is of other bodies or no quarter of a pinned beam, or a material has kinematic
+    hardening; and PatchTooSmallError (a ValueError) when the contact leaves the patch of matched
+    nodes.
     """
     for name, value in (("duration", duration), ("time_step", time_step), ("penalty", penalty)):
         positive("solve", name, value)

@@ -78,11 +78,7 @@ def table(
     solid = np.broadcast_to(models == SOLID, records.shape)
     if not solid.any():
         return records
-    if records["beam_shape"][solid].any():
-        raise ValueError(f"beam_model = {SOLID!r}: must be another one {OTHER_SECTION}")
-    for side in ("left", "right"):
-        if np.any(records[f"support_{side}"][solid] == SUPPORTS.index("elastic")):
-            raise ValueError(f"beam_model = {SOLID!r}: must be {SPRUNG_BEAM}")
+    _refuse_beams(records[solid])
     records["beam_model"][solid] = SOLID_MODEL
     for name in _BEAM_MODELS_ONLY:
         records[name][solid] = 0
@@ -97,6 +93,15 @@ def table(
         sizes = np.array([contact_radius(_impact_of(case)) for case in records[solid]]) / sizes
     records["element_size"][solid] = sizes
     return records
+
+
+def _refuse_beams(records: Array) -> None:
+    """Raise ValueError where a beam is none of the 3-D FE model's."""
+    if records["beam_shape"].any():
+        raise ValueError(f"beam_model = {SOLID!r}: must be another one {OTHER_SECTION}")
+    for side in ("left", "right"):
+        if np.any(records[f"support_{side}"] == SUPPORTS.index("elastic")):
+            raise ValueError(f"beam_model = {SOLID!r}: must be {SPRUNG_BEAM}")
 
 
 def is_solid(cases: Array) -> Array:

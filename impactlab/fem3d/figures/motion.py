@@ -24,15 +24,16 @@ def animation(solid: xr.Dataset) -> Animation:
 
 
 def _section(ax: Axes, solid: xr.Dataset) -> Part:
-    """Draw the elements by the contact in the plane along the beam, both halves of it."""
+    """Draw the elements by the contact in the plane along the beam, on both sides of it."""
     corners, strain = 1e3 * solid["section_position"].values, solid["section_plastic_strain"].values
     plastic = np.abs(corners[-1][strain[-1] >= PLASTIC_ZONE_STRAIN]).max(initial=0.0)
     extent = min(float(plastic), 0.5e3 * float(solid["beam_depth"]))
     reach = 1.6 * max(1e3 * float(solid["patch"]), extent)
     near = np.abs(corners).max(axis=(0, 2, 3)) < 2.0 * reach
-    halves = corners[:, near], corners[:, near] * [-1.0, 1.0]
-    polygons = np.concatenate(halves, axis=1)
-    percent = 100.0 * np.tile(strain[:, near], 2)
+    polygons, percent = corners[:, near], 100.0 * strain[:, near]
+    if int(solid["copies"]) == 4:
+        polygons = np.concatenate([polygons, polygons * [-1.0, 1.0]], axis=1)
+        percent = np.tile(percent, 2)
     least = 100.0 * PLASTIC_ZONE_STRAIN
     cells = PolyCollection(
         list(polygons[0]),
@@ -43,7 +44,7 @@ def _section(ax: Axes, solid: xr.Dataset) -> Part:
     )
     ax.add_collection(cells)
     ax.set(xlim=(-reach, reach), ylim=(-0.6 * reach, 0.4 * reach), aspect="equal")
-    ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis("height", "mm"))
+    ax.set(xlabel=labels.axis("from the impact", "mm"), ylabel=labels.axis("height", "mm"))
     ax.set_title(f"Equivalent plastic strain (PEEQ); grey: below {least:g} %", loc="left")
     ax.grid(visible=False)
     scales.linear(ax, "xy")

@@ -40,9 +40,14 @@ def _draw_faces(ax: Axes, polygons: Floats, across: str = "height", **looks: Any
     ax.add_collection(collection)
     ax.set_aspect("equal")
     ax.grid(visible=False)
-    ax.set(xlabel=labels.axis("from mid-span", "mm"), ylabel=labels.axis(across, "mm"))
+    ax.set(xlabel=labels.axis("from the impact", "mm"), ylabel=labels.axis(across, "mm"))
     scales.linear(ax, "xy")
     return collection
+
+
+def _left(solid: xr.Dataset, reach: float) -> float:
+    """Return where a picture of the contact begins that ends at `reach`."""
+    return 0.0 if int(solid["copies"]) == 4 else -reach
 
 
 _COLOURS = {"beam": "#DCE9F2", "sphere": "#F7E3D4", "fully integrated": "#9CC4DD"}
@@ -51,8 +56,9 @@ _EDGE = "0.25"
 
 def _mesh_sentences(solid: xr.Dataset, beams: xr.Dataset) -> tuple[str]:
     size, patch = 1e3 * float(solid["element_size"]), 1e3 * float(solid["patch"])
+    part = "quarter" if int(solid["copies"]) == 4 else "half"
     return (
-        f"The quarter model: {int(solid['number_of_elements']):,} hexahedra, "
+        f"The {part} model: {int(solid['number_of_elements']):,} hexahedra, "
         f"{labels.number(size)} mm about the contact. Above, the plane of symmetry along the beam; "
         "below, the same about the contact, and the beam's top face. Within "
         f"{labels.number(patch)} mm (framed) the nodes of sphere and beam lie above each other; "
@@ -90,11 +96,13 @@ def mesh(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     above.margins(0.01)
     side.set_anchor("E")  # close to each other, though squares
     top.set_anchor("W")
-    side.set(xlim=(0.0, reach), ylim=(-0.6 * reach, 0.4 * reach))
-    top.set(xlim=(0.0, reach), ylim=(0.0, reach))
+    left = _left(solid, reach)
+    side.set(xlim=(left, reach), ylim=(-0.6 * reach, 0.4 * reach))
+    top.set(xlim=(left, reach), ylim=(0.0, reach))
     for ax, low in ((side, -patch), (top, 0.0)):  # the patch of matched nodes
         look = {"fill": False, "color": style.COLOURS[1], "zorder": 3}
-        ax.add_patch(Rectangle((0.0, low), patch, patch - low, **look))
+        start = _left(solid, patch)
+        ax.add_patch(Rectangle((start, low), patch - start, patch - low, **look))
     figure.legend(
         handles=[Patch(facecolor=c, edgecolor=_EDGE, label=n) for n, c in _COLOURS.items()],
         loc="outside upper center",
@@ -109,9 +117,10 @@ _STRAIN = "equivalent_plastic_strain"
 def _strain_sentences(solid: xr.Dataset, beams: xr.Dataset) -> tuple[str]:
     polygons, elements = faces(solid, 1)
     plastic = solid[_STRAIN].values[elements] >= PLASTIC_ZONE_STRAIN
+    along = float(np.abs(polygons[plastic, :, 0]).max(initial=0.0))
     reach = (
-        f"In this plane it reaches {labels.number(float(polygons[plastic, :, 0].max()), 3)} mm "
-        f"from mid-span and {labels.number(-float(polygons[plastic, :, 1].min()), 3)} mm deep. "
+        f"In this plane it reaches {labels.number(along, 3)} mm "
+        f"from the impact and {labels.number(-float(polygons[plastic, :, 1].min()), 3)} mm deep. "
         if plastic.any()
         else "There is none. "
     )
@@ -134,7 +143,7 @@ def plastic_strain(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
     extent = np.abs(polygons[plastic]).max(initial=0.0)  # at most half the beam's depth
     extent = min(float(extent), 0.5e3 * float(solid["beam_depth"]))
     reach = 1.6 * max(1e3 * float(solid["patch"]), extent)
-    ax.set(xlim=(0.0, reach), ylim=(-0.75 * reach, 0.25 * reach))
+    ax.set(xlim=(_left(solid, reach), reach), ylim=(-0.75 * reach, 0.25 * reach))
     ax.set_title(plastic_strain.title, loc="left")
     if plastic.any():
         shown = _draw_faces(ax, polygons[plastic], edgecolors="0.75", linewidths=0.3)
@@ -148,7 +157,7 @@ def plastic_strain(solid: xr.Dataset, beams: xr.Dataset) -> Figure:
 
 _PANELS = {
     "contact_force": "contact force",
-    "midspan_deflection": "deflection at mid-span",
+    "midspan_deflection": "deflection under the sphere",
     "indentation": "indentation",
 }
 
@@ -158,9 +167,9 @@ def _histories_sentences(solid: xr.Dataset, beams: xr.Dataset) -> tuple[str]:
     size = labels.number(1e3 * float(solid["element_size"]))
     law = CONTACT_LAWS[str(beams["contact"].item())].title
     return (
-        f"Contact force, deflection of the beam's axis at mid-span and indentation (approach of "
-        f"the sphere's centre of mass and that axis) at {velocity} m/s: of the 3-D FE model with "
-        f"elements of {size} mm about the contact, and of beam models with the contact law "
+        "Contact force, deflection of the beam's axis under the sphere and indentation (approach "
+        f"of the sphere's centre of mass and that axis) at {velocity} m/s: of the 3-D FE model "
+        f"with elements of {size} mm about the contact, and of beam models with the contact law "
         f"{law}. Downwards is positive.",
     )
 

@@ -48,7 +48,7 @@ def test_plastic_elements_have_their_strain_in_per_cent():
     assert len(still.get_paths()) == int((strain < 1e-5).sum())
     reach = max(patch.vertices[:, 0].max() for patch in plastic.get_paths())
     said = plastic_strain.caption(given, beam_models())
-    assert f"reaches {reach:g} mm from mid-span" in said
+    assert f"reaches {reach:g} mm from the impact" in said
     assert reach < 1e3 * DEPTH_OF_STRAIN + 2.0
     # a run without plastic strain says so
     elastic = solid().assign(equivalent_plastic_strain=0.0 * solid()["equivalent_plastic_strain"])
@@ -67,7 +67,7 @@ def test_histories_are_the_stored_values_in_the_axes_units():
     figure = histories.plot(given, others)
     force, deflection, _ = figure.axes
     assert force.get_ylabel() == "Contact force (kN)"
-    assert deflection.get_ylabel() == "Deflection at mid-span (µm)"
+    assert deflection.get_ylabel() == "Deflection under the sphere (µm)"
     drawn = {line.get_label(): line for line in force.lines}
     assert list(drawn) == ["3-D", "Euler-Bernoulli", "Timoshenko", "Spring-Mass"]
     assert np.asarray(drawn["3-D"].get_ydata()) == pytest.approx(1e-3 * given["contact_force"])

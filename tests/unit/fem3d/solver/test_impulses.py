@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d.solver.impulses import PARTS, RULE, SHAPE, bulges, close_gaps
-from impactlab.fem3d.solver.mesh import _faces
+from impactlab.fem3d.solver.mesh import faces_of
 
 DT, SIDE = 0.1, 3
 """Seconds of a step; pairs along a side of the patch, whose faces are squares of 1 m."""
@@ -21,7 +21,7 @@ class Patch:
         self.x, self.v = np.zeros((2 * count, 3)), np.zeros((2 * count, 3))
         self.x[:count, 2] = gap
         self.v[:count, 2] = -1.0
-        self.faces, self.approach = _faces(count), np.ones(count)
+        self.faces, self.approach = faces_of(SIDE, SIDE), np.ones(count)
         self.bulge, self.closing = np.full((4, len(SHAPE)), bulge), np.zeros(count)
         self.rim, self.normals = np.full(count, rim), np.tile([-slope, 0.0, 1.0], (count, 1))
 
