@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d import plan as plans
-from impactlab.fem3d.plan import USUAL_TIME, case_of, planned
+from impactlab.fem3d.plan import USUAL_TIME, beam_models, case_of, planned
 from impactlab.fem3d.solver import estimate, impact_mesh, least_cost
 from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.study.schema.readers import read_impacts
@@ -94,6 +94,16 @@ def test_the_papers_case_takes_its_duration_and_about_a_minute(quick):
         floor = least_cost(quick.impact, element_size=size, duration=1e-3)
         assert floor.elements < cost.elements
         assert floor.cpu_seconds < cost.cpu_seconds
+
+
+def test_beside_the_middle_a_half_is_planned_for_models_that_bend(quick):
+    beside = replace(quick, impact=replace(quick.impact, strike_position=0.375))
+    plan, usual = (planned(case, element_size=2e-3) for case in (beside, quick))
+    assert plan.cost.elements == pytest.approx(2 * usual.cost.elements, rel=0.1)
+    floors = [least_cost(case.impact, element_size=2e-3, duration=1e-4) for case in (beside, quick)]
+    assert floors[0].elements == pytest.approx(2 * floors[1].elements, abs=1)
+    assert beam_models(quick.impact) == ("euler_bernoulli", "timoshenko", "spring_mass")
+    assert beam_models(beside.impact) == ("euler_bernoulli", "timoshenko")
 
 
 def test_a_moment_is_no_reason_for_a_mesh_without_bounds(quick):

@@ -70,6 +70,32 @@ def test_each_model_answers_as_it_does_alone(solved):
     assert 0.0 < solved["processor_time"].max() < 100.0
 
 
+def test_places_and_ends_reach_the_3d_model():
+    parameters = "{beam_model: [timoshenko, solid], strike_position: [0.1, 0.5]}"
+    text = TEXT.replace("base: paper", "base: paper, beam: {support_left: clamped}")
+    text = text.split("sampling:")[0].replace("0.02 ms", "0.03 ms") + (
+        "discretisation: {element_size: 4 mm}\n"
+        f"sampling: {{method: grid, parameters: {parameters}}}\n"
+        "responses: [peak_force, energy_error]\n"
+    )
+    cases = witness.cases(design(study_of_text("ends", text)), ALL[:4])
+    (error,) = witness.solve(cases[2:3], HERE)["energy_error"]
+    impact = replace(il.paper_impact(), strike_position=0.1)
+    alone = {
+        end: solid.solve(
+            replace(impact, beam=replace(impact.beam, support_left=end)),
+            element_size=4e-3,
+            duration=3e-5,
+        )["energy_error"]
+        for end in ("clamped", "pinned")
+    }
+    assert error == alone["clamped"]
+    assert error != alone["pinned"]
+    sprung = text.replace("clamped", "elastic, stiffness_left: 1e8, rotational_stiffness_left: 1e4")
+    with pytest.raises(ValueError, match="elastic ends"):
+        design(study_of_text("sprung", sprung))
+
+
 def test_what_a_model_does_not_know_is_nothing_to_it(study, solved):
     """Four of eight runs differ: two of the beam, two of the 3-D FE model."""
     work = Work.of(design(study))

@@ -8,6 +8,7 @@ import pytest
 
 from impactlab.fem3d import kratos
 from impactlab.fem3d.deck import FLAVOURS, write_deck
+from impactlab.fem3d.solver import impact_mesh
 from impactlab.fem3d.solver.dataset import solve_on
 from impactlab.fem3d.solver.mesh import SPHERE
 
@@ -41,6 +42,25 @@ def test_conditions_are_the_impact_in_n_mm_t_s(written, impact, flavour, mesh):
     density = float(deck[start + 1].data[0][0])
     quarter = np.array([tetrahedra(mesh.nodes[e]) for e in mesh.elements[mesh.body == SPHERE]])
     assert 4.0 * density * quarter.sum() * 1e9 == pytest.approx(1.5e-3, rel=1e-6)
+
+
+@both
+def test_a_half_holds_a_clamped_face_and_says_so(tmp_path, impact, flavour):
+    beam = replace(impact.beam, support_left="clamped", support_right="free")
+    other = replace(impact, beam=beam, strike_position=0.4)
+    half = impact_mesh(other, element_size=3e-3, ratio=2.0, coarsest=0.02)
+    path = write_deck(tmp_path / "deck.inp", other, half, flavour=flavour, duration=1e-4)
+    deck = decks.cards(path)
+    held = decks.named(deck, "BOUNDARY").data
+    assert held == [["SYMMETRY_Y", "2", "2"], ["CLAMPED", "1", "3"]]
+    sets = {card.parameters["NSET"]: card.data for card in deck if card.keyword == "NSET"}
+    nodes = np.array([int(number) for row in sets["CLAMPED"] for number in row]) - 1
+    face = np.flatnonzero(np.isclose(half.nodes[:, 0], -0.04))
+    np.testing.assert_array_equal(np.sort(nodes), face)
+    assert all(sets.values())  # none is empty
+    head = " ".join(line[2:].strip() for line in path.read_text().splitlines() if "**" in line)
+    assert "contact forces are a half of the whole" in head
+    assert "left end is held all over its face, its right end free." in head
 
 
 def tetrahedra(corners):
@@ -126,3 +146,25 @@ def test_the_mesh_of_another_impact_is_refused(tmp_path, impact, mesh, length, w
     ):
         with pytest.raises(ValueError, match=rf"mesh: the {body}'s {length} is .* {wrong} m in"):
             take()
+
+
+@pytest.mark.parametrize(
+    ("beam", "place", "words"),
+    [
+        ({"support_left": "clamped"}, 0.5, "ends are pinned and pinned in the mesh and clamped"),
+        ({}, 0.4, r"strike from the left end is 0\.05 m in the mesh and 0\.04 m in"),
+        ({"support_right": "free"}, 1.0, "strike_position = 1.0: the 3-D model needs beam on both"),
+        ({"mass_damping": 1.0}, 0.5, "mass_damping = 1.0: the 3-D model is of a rectangular beam"),
+    ],
+)
+def test_another_beam_or_place_is_refused(impact, mesh, beam, place, words):
+    other = replace(impact, beam=replace(impact.beam, **beam), strike_position=place)
+    with pytest.raises(ValueError, match=words):
+        solve_on(mesh, other, duration=1e-4)
+
+
+def test_kratos_gets_quarters_of_pinned_beams_alone(impact):
+    other = replace(impact, strike_position=0.4)
+    half = impact_mesh(other, element_size=3e-3, ratio=2.0, coarsest=0.02)
+    with pytest.raises(ValueError, match="Kratos gets quarters of a pinned beam alone"):
+        kratos.solve_on(half, other, duration=1e-4)
