@@ -14,11 +14,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from impactlab.fem3d.solver.dataset import IMPACT_PARAMETERS
 from impactlab.fem3d.solver.estimates import contact_radius
+from impactlab.fem3d.solver.lattice import Integers
 from impactlab.fem3d.solver.mesh import (
     BEAM,
     FACES,
     SPHERE,
-    Integers,
     Mesh,
     check_mesh,
     sphere_density,

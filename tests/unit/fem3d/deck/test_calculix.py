@@ -2,6 +2,7 @@
 
 import re
 import signal
+from dataclasses import replace
 
 import calculix
 import numpy as np
@@ -33,7 +34,7 @@ def small_deck(tmp_path, impact, mesh, plastic):
     )
 
 
-def check_read(screen, mesh):
+def check_read(screen, mesh, sets=18):
     """All that is in the deck has been understood."""
     assert "*ERROR" not in screen
     assert "*WARNING" not in screen
@@ -41,14 +42,21 @@ def check_read(screen, mesh):
     assert counted(screen, "elements") == len(mesh.elements)
     inner = 3 * len(mesh.elements)  # that C3D8I adds for its incompatible modes
     assert counted(screen, "nodes") == len(mesh.nodes) + inner
-    assert counted(screen, "sets") == 18
+    assert counted(screen, "sets") == sets
     assert counted(screen, "materials") == 3  # and the surface interaction
 
 
 @calculix.needed
-def test_elastic_deck_is_read_and_steps(tmp_path, impact, mesh):
+@pytest.mark.parametrize("place", [0.5, 0.4])
+def test_elastic_deck_is_read_and_steps(tmp_path, impact, mesh, place):
+    sets = 18
+    if place != 0.5:
+        beam = replace(impact.beam, support_left="clamped", support_right="free")
+        impact = replace(impact, beam=beam, strike_position=place)
+        mesh = impact_mesh(impact, element_size=3e-3, ratio=2.0, coarsest=0.02)
+        sets = 17  # one less that is held
     found = calculix.run(small_deck(tmp_path, impact, mesh, plastic=False))
-    check_read(found.screen, mesh)
+    check_read(found.screen, mesh, sets)
     assert found.code == 0
     assert "Job finished" in found.screen
     times, places = found.table("displacements")
