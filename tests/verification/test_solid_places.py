@@ -53,8 +53,8 @@ def test_a_mirrored_strike_has_the_mirrored_answer(monkeypatch):
     image = solved(monkeypatch, held("free", "clamped", 0.95))
     middle = solved(monkeypatch, held("clamped", "clamped", 0.5))
     assert_same(image, run)
-    apart = abs(run["midspan_deflection"] - middle["midspan_deflection"]).max()
-    assert float(apart / middle["midspan_deflection"].max()) > 0.05
+    deflection, free = (solution["midspan_deflection"] for solution in (run, middle))
+    assert float(deflection.max()) < 0.95 * float(free.max())  # the clamp is near
 
 
 def test_a_free_beam_struck_beside_its_middle_keeps_momentum_and_energy():

@@ -242,15 +242,7 @@ def impact_mesh(
     if parts == 2:
         left = graded(size, half, impact.strike_position * beam.span, ratio, largest)
         x, struck = np.concatenate([-left[:0:-1], right]), left.size - 1
-    # The axis is one of the cuts along z. Where a last layer above it would be thin, all are alike.
-    middle = beam.depth / 2
-    fine = depth if middle - depth > 0.7 * size else middle
-    upper = graded(size, fine, middle, ratio, largest)
-    last = upper[-1] - upper[-2]
-    lower = middle + graded(last, last, middle, ratio, largest)
-    z = -np.concatenate([upper, lower[1:]])[::-1]
-    axis = int(np.argmin(np.abs(z + middle)))
-
+    z, axis = _layers(beam.depth / 2, size, depth, ratio, largest)
     beam_nodes, beam_elements = brick(x, y, z)
     sphere_nodes, sphere_elements, surface = quarter_sphere(
         impact.sphere.radius, size, half, depth, ratio, largest
@@ -262,8 +254,8 @@ def impact_mesh(
     first, reach = len(beam_nodes), round(half / size)
     place = np.arange(first, dtype=np.int32).reshape(x.size, y.size, z.size)
     above, below = (
-        rows[max(middle - reach, 0) : middle + reach + 1, : reach + 1]
-        for rows, middle in ((surface + np.int32(first), pole), (place[:, :, -1], struck))
+        rows[max(centre - reach, 0) : centre + reach + 1, : reach + 1]
+        for rows, centre in ((surface + np.int32(first), pole), (place[:, :, -1], struck))
     )
     pairs = np.stack([above, below], axis=-1).reshape(-1, 2)
     faces = faces_of(*above.shape)
@@ -301,6 +293,22 @@ def impact_mesh(
         element_size=size,
         patch=half,
     )
+
+
+def _layers(
+    middle: float, size: float, depth: float, ratio: float, largest: float
+) -> tuple[Floats, int]:
+    """Return the beam's cuts along z in m, ascending, and the number of that at mid-depth.
+
+    middle: half the beam's depth. Others: see quarter_sphere. Where a last layer above the axis
+    would be thin, all are alike.
+    """
+    fine = depth if middle - depth > 0.7 * size else middle
+    upper = graded(size, fine, middle, ratio, largest)
+    last = upper[-1] - upper[-2]
+    lower = middle + graded(last, last, middle, ratio, largest)
+    z = -np.concatenate([upper, lower[1:]])[::-1]
+    return z, int(np.argmin(np.abs(z + middle)))
 
 
 def _held(
