@@ -40,7 +40,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from impactlab.model.impact import OTHER_BEAM, OTHER_SECTION, Impact, is_plain
+from impactlab.model.impact import OTHER_SECTION, Impact
 from impactlab.model.shapes import Rectangle
 from impactlab.types import Floats
 
@@ -248,13 +248,11 @@ def contact_stress(impact: Impact) -> tuple[Floats, Floats]:
     Beyond those of the half-space, of the moment and of a strip's own bending, of one impact or of
     many; zero where `contact_prestress` is ignored.
 
-    Raises ValueError where `beam_model` is not "timoshenko", or the beam is outside the table or no
-    pinned one that is struck at mid-span.
+    Raises ValueError where `beam_model` is not "timoshenko", or the beam is outside the table or
+    struck near an end.
     """
     applies = np.not_equal(impact.contact_prestress, "ignored")
     _within_table(impact, applies, "Impact.contact_prestress = 'bending': ")
-    if np.any(applies & ~is_plain(impact)):
-        raise ValueError(f"Impact.contact_prestress = 'bending': must be ignored {OTHER_BEAM}")
     square = impact.beam.depth * impact.beam.depth
     along, across = (_from_table(impact, table) for table in (STRESS_ALONG, STRESS_ACROSS))
     strip = _strip(impact)

@@ -16,18 +16,26 @@ like steels. On other metals theta is 0.6 (soft copper) to 1.1 times (under glas
 with aluminium, titanium and hardening, but 1.7 under a sphere as soft as the beam, which flows, too
 (5 m/s, copper 1 m/s; 5 elements over the contact's radius).
 
-The kink needs no stress: a beam of two straight halves. So the kernels hold the deflection beyond
-that, `w + theta x/2`, x the distance from the support, in which all moments are as they were; the
-velocity is that of the beam. Ends that are not pinned would hold it, and beside mid-span the halves
-would turn by other angles: model/contact_compliance.py refuses these. Against the moment M at
-mid-span the kink takes the work M d theta from the contact.
+The kink needs no stress where both ends are pinned: a beam of two straight parts, of which the
+left one turns by theta (L - x_0)/L. So the kernels hold the deflection beyond that, which is
+`w + theta (L - x_0)/L x` up to the struck section at x_0; all moments are as they were, and the
+velocity is that of the beam. Against the moment M there the kink takes the work M d theta from the
+contact. Other ends, and a foundation, would hold it: there the kink is left out. It makes 0.5 % of
+the force of a first contact.
 """
 
 from __future__ import annotations
 
 import math
 
-from impactlab.solver.beam import BeamGrid, BeamState, mirror, mirror_rotation
+from impactlab.solver.beam import (
+    PINNED,
+    SYMMETRIC,
+    BeamGrid,
+    BeamState,
+    mirror,
+    mirror_rotation,
+)
 from impactlab.solver.contact.history import Pair, yield_stress
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.jit import compiled
@@ -42,7 +50,8 @@ def growth(case: Record, contact: Record, pair: Pair) -> float:
     """Return how far the kink (rad) has grown since the last call; keeps what it has seen."""
     area = contact.delta_m * contact.delta_r
     grown, contact.dent_area = area - contact.dent_area, area
-    if grown <= 0.0:
+    hinged = case.support_left == PINNED and case.support_right == PINNED
+    if grown <= 0.0 or not hinged or case.foundation_stiffness > 0.0:
         return 0.0
     S_y = yield_stress(contact, pair)
     deeper = contact.delta_m / yield_indentation(pair.E, pair.R, S_y) - SHALLOW
@@ -54,17 +63,30 @@ def growth(case: Record, contact: Record, pair: Pair) -> float:
 
 
 @compiled
+def left_share(grid: BeamGrid) -> float:
+    """Return the share of the kink by which the part left of it turns."""
+    return 0.5 if grid.right == SYMMETRIC else (grid.stop - grid.mid) / (grid.stop - 1)
+
+
+@compiled
 def height(grid: BeamGrid, kink: float) -> float:
-    """Return how far the kink (rad) raises mid-span (m)."""
-    return 0.5 * kink * (grid.mid - 1) * grid.dx
+    """Return how far the kink (rad) raises the struck node (m)."""
+    return left_share(grid) * kink * (grid.mid - 1) * grid.dx
 
 
 @compiled
 def bend_back(beam: BeamState, now: int, psi: Array, grid: BeamGrid, growth: float) -> None:
     """Let the beam keep its place while its kink grows by so much (rad)."""
+    left = left_share(grid) * growth
     for i in range(1, grid.mid):
-        beam.w[now, i + 1] += 0.5 * growth * i * grid.dx
-        psi[i] += 0.5 * growth
+        beam.w[now, i + 1] += left * i * grid.dx
+        psi[i] += left
+    if grid.right != SYMMETRIC:
+        right = growth - left
+        for i in range(grid.mid, grid.stop):
+            psi[i] -= right
+        for i in range(grid.mid + 1, grid.stop):
+            beam.w[now, i] += right * (grid.stop - i) * grid.dx
     mirror(beam.w, 1 - now, beam.u, grid)
     mirror_rotation(psi, grid)
 
@@ -72,6 +94,10 @@ def bend_back(beam: BeamState, now: int, psi: Array, grid: BeamGrid, growth: flo
 @compiled
 def straighten(w: Array, grid: BeamGrid, kink: float) -> None:
     """Make of the deflection beyond the kink that of the beam."""
-    for i in range(1, grid.mid + 1):
-        for row in range(2):
-            w[row, i] -= 0.5 * kink * (i - 1) * grid.dx
+    left = left_share(grid) * kink
+    for row in range(2):
+        for i in range(1, grid.mid + 1):
+            w[row, i] -= left * (i - 1) * grid.dx
+        if grid.right != SYMMETRIC:
+            for i in range(grid.mid + 1, grid.stop):
+                w[row, i] -= (kink - left) * (grid.stop - i) * grid.dx

@@ -141,3 +141,37 @@ def test_a_strip_has_its_static_stress_across_from_its_own_bending():
         contact_stress(replace(base, contact_compliance=name))[1] for name in ("beam", "strip")
     )
     assert own == pytest.approx(float(beams - strips), rel=2e-3)
+
+
+def corrected(place, *ends, velocity=1.0, strikes=1, duration="4 ms"):
+    impact = replace(il.corrected_impact(velocity), strike_position=place, strikes=strikes)
+    beam = replace(impact.beam, support_left=ends[0], support_right=ends[-1])
+    run = il.simulate(replace(impact, beam=beam), il.Discretisation(nodes=41), duration=duration)
+    assert run.energy_error < 3e-4
+    return run
+
+
+@pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+def test_a_dent_kinks_a_pinned_beam_which_rests_straight_on_either_side():
+    run = corrected(0.3, "pinned", strikes=2)
+    assert run.plastic_dissipation == 0.0
+    w, dx = run.deflection.values, float(run.x[1])
+    turns = np.diff(w, 2) / dx
+    theta = turns[11]
+    assert theta > 1e-6
+    assert np.abs(np.delete(turns, 11)).max() < 1e-9 * theta
+    assert w[12] == pytest.approx(-0.3 * 0.7 * float(run.x[-1]) * theta)
+
+
+@pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+def test_where_the_beam_is_struck_changes_its_kinked_contact_little():
+    """Before the waves come back from the ends; other ends than pinned leave the kink out."""
+    middle, left, right = (
+        corrected(place, "pinned", velocity=5.0, duration="0.3 ms") for place in (0.5, 0.4, 0.6)
+    )
+    held = corrected(0.4, "clamped", velocity=5.0, duration="0.3 ms")
+    for name in ("peak_force", "permanent_indentation"):
+        assert float(left[name]) == pytest.approx(float(right[name]), rel=1e-12)
+        assert float(left[name]) == pytest.approx(float(middle[name]), rel=1e-3)
+        assert float(held[name]) == pytest.approx(float(middle[name]), rel=1e-2)
+        assert float(held[name]) != pytest.approx(float(middle[name]), rel=1e-3)
