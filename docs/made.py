@@ -37,9 +37,9 @@ DEAR = ("sobol_large", "witness", "witness_mesh", "witness_parts", "witness_swin
 MOST = 6
 """Figures stored of a study, the first ones of its report."""
 WORKERS = min(4, os.cpu_count() or 1)
-SHOWN = ("velocity", "contact_laws", "shear", "strike_position", "supports", "strikes", "material",
-         "model_form", "sobol_slow", "sobol", "sobol_fast", "sobol_large", "discretisation",
-         "time_step", "ishigami", "smoke")  # fmt: skip
+SHOWN = ("velocity", "contact_laws", "shear", "strike_position", "supports", "strikes", "layers",
+         "material", "model_form", "sobol_slow", "sobol", "sobol_fast", "sobol_large",
+         "discretisation", "time_step", "ishigami", "smoke")  # fmt: skip
 FIRST = {
     "contact_laws": "contact_laws",
     "fig05": "force_history",

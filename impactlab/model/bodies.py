@@ -105,7 +105,7 @@ class Beam:
         "roller" (pinned, but free along the axis, which the beam model "von_karman" alone moves:
         the others take it as "pinned"). Clamped and free ends need the beam models
         "euler_bernoulli", "elastic", "timoshenko" or "von_karman", elastic ones one of the first
-        two.
+        three.
     stiffness_left, stiffness_right : Quantity, default 0
         Shear force over the deflection at an elastic end, in N/m.
     rotational_stiffness_left, rotational_stiffness_right : Quantity, default 0
@@ -118,8 +118,8 @@ class Beam:
         Damping of each mode over its critical one, of 1; with the scheme "modal" alone.
     foundation_stiffness : Quantity, default 0
         Force per length over the deflection of a bed of springs beneath the beam (Winkler), in
-        N/m2; they pull as they push. Damping and foundation need the beam models "euler_bernoulli"
-        or "elastic" (solver/resistance.py).
+        N/m2; they pull as they push. Damping and foundation need the beam models
+        "euler_bernoulli", "elastic" or "timoshenko" (solver/resistance.py).
 
     Raises
     ------

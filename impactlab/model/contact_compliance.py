@@ -42,6 +42,7 @@ import numpy as np
 
 from impactlab.model.impact import OTHER_SECTION, Impact
 from impactlab.model.shapes import Rectangle
+from impactlab.solver import RESISTANCES
 from impactlab.types import Floats
 
 DEPTHS = (0.2, 0.3, 0.45, 0.7, 1.0, 1.5, 2.5, 4.0)
@@ -220,6 +221,9 @@ def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
     free = np.isin(beam.support_left, moving) | np.isin(beam.support_right, moving)
     if np.any(strip & free):
         raise ValueError(f"{refused}needs ends that are pinned or clamped: set 'beam'")
+    for name in RESISTANCES:
+        if np.any(strip & np.greater(getattr(beam, name), 0.0)):
+            raise ValueError(f"{refused}needs a beam without {name}: set 'beam', or {name}: 0")
     c, gamma = _of_beam(impact, FORCE, MOMENT)
     ball = _at_ratio(np.asarray(sphere.material.poissons_ratio), np.asarray(SPHERE))
     c = c + ball / (sphere.material.youngs_modulus * sphere.radius)

@@ -74,11 +74,11 @@ def node_steps(cases: Any) -> Any:
     bending = 0.5 * wave * dx * np.sqrt(section.area / section.second_moment)
     bends = cases["beam_model"] <= BEAM_MODELS.index("elastic")
     modal = cases["scheme"] == SCHEMES.index("modal")
-    lag = cases["stiffness_damping"] / bending
-    bending = bending * (np.sqrt(1.0 + lag * lag) - lag)
     stretches = cases["beam_model"] == BEAM_MODELS.index("von_karman")
     beside = bending / np.sqrt(1.0 + stretches * (bending / wave) ** 2)
-    largest = np.where(modal, wave, np.where(bends | stretches, beside, 0.5 * wave))
+    largest = np.where(bends | stretches, beside, 0.5 * wave)
+    lag = cases["stiffness_damping"] / largest
+    largest = np.where(modal, wave, largest * (np.sqrt(1.0 + lag * lag) - lag))
     run = solved(cases) * cases["nodes"] * cases["duration"] / (cases["courant"] * largest)
     return run * cases["strikes"]
 

@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from impactlab.solver import SUPPORTS
-from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
+from impactlab.solver.jit import allocating, compiled, summing, vectorised
 from impactlab.solver.types import ONE, TWO, Array, Index
 
 
@@ -290,19 +290,6 @@ def _set_end(
     else:
         w[end - inward] = 2.0 * w[end] - beside
         w[end - 2 * inward] = 4.0 * (w[end] - beside) + inside
-
-
-@inlined
-def mirror_rotation(psi: Array, grid: BeamGrid) -> None:
-    """Set the rotations beyond both ends, half-way from node i to i + 1 at index i.
-
-    They are odd about an end that is clamped or symmetric, even about a free one, where the section
-    does not bend; half-way from a pinned end lies no such node.
-    """
-    if grid.left != PINNED:
-        psi[1] = psi[2] if grid.left == FREE else -psi[2]
-    if grid.right != PINNED:
-        psi[grid.last] = psi[grid.last - 1] if grid.right == FREE else -psi[grid.last - 1]
 
 
 @compiled

@@ -100,7 +100,7 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
 
 @compiled
 def _settle(state: State) -> None:
-    settle(state.beam, state.plastic, state.section, state.grid)
+    settle(state.beam, state.plastic, state.section, state.grid, 0.0)
 
 
 MODEL = BeamModel(_make, _step, _curvature, _energy, deflected, _spread, settle=_settle)

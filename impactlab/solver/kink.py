@@ -28,17 +28,11 @@ from __future__ import annotations
 
 import math
 
-from impactlab.solver.beam import (
-    PINNED,
-    SYMMETRIC,
-    BeamGrid,
-    BeamState,
-    mirror,
-    mirror_rotation,
-)
+from impactlab.solver.beam import PINNED, SYMMETRIC, BeamGrid, BeamState, mirror
 from impactlab.solver.contact.history import Pair, yield_stress
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.jit import compiled
+from impactlab.solver.timoshenko import mirror_rotation
 from impactlab.solver.types import Array, Record
 
 VOLUME, SHALLOW, WIDTH, DEPTH = 1.07, 75.0, 94.0, 1.41

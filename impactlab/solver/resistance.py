@@ -18,7 +18,7 @@ which closes the balance of energy to round-off. Source: Rayleigh, Theory of Sou
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,12 +27,12 @@ from impactlab.solver.beam import BeamGrid, BeamState, bending_energy, copies, m
 from impactlab.solver.fibre_plasticity import plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, vectorised
 from impactlab.solver.section import FibreSection
+from impactlab.solver.settle import settle
 from impactlab.solver.state import BeamModel, State
 from impactlab.solver.types import ONE, TWO, Array, Record
 
 _PLAIN_MAKE, _PLAIN_STEP, _PLAIN_CURVATURE = euler_bernoulli.MODEL[:3]
 _PLAIN_ENERGY, _PLAIN_SPREAD = euler_bernoulli.MODEL.energy, euler_bernoulli.MODEL.spread
-_PLAIN_SETTLE: Any = euler_bernoulli.MODEL.settle
 
 
 class Resistance(NamedTuple):
@@ -183,11 +183,11 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
 
 @compiled
 def _settle(state: State) -> None:
-    extra = state.extra
+    _, section, grid, beam, plastic, extra = state
     for i in range(extra.before.size):
         extra.before[i] = extra.drag[i] = 0.0
     extra.lost[0] = 0.0
-    _PLAIN_SETTLE(_plain(state))
+    settle(beam, plastic, section, grid, extra.bed * grid.mu / grid.dt**2)
 
 
 MODEL = BeamModel(_make, _step, _curvature, _energy, euler_bernoulli.deflected, _spread, _settle)

@@ -1,13 +1,15 @@
 """The beam at rest after a strike: its static shape with the plastic strains held.
 
-Without a load the moment is linear along the beam and the shear force Q constant, and
+Without a load the moment is linear along the beam and the shear force Q constant, unless a
+foundation of the stiffness k per length holds the beam, and
 
-    kappa = (M_0 - M)/EI,   w_x = psi + Q/(k G A)
+    M_x = Q,   Q_x = k w,   kappa = (M_0 - M)/EI,   w_x = psi + Q/(k G A)
 
 are summed from the left end on (Q/(k G A) = 0 and psi = w_x, half-way between nodes, of
 Euler-Bernoulli's beam: the equations are those of its differences, see beam.py). Each end leaves
 two of its four quantities free; those of the left end follow from the two conditions of the right
-one. Pinned beams and cantilevers have no moment at rest, so that kappa = M_0/EI.
+one. Pinned beams and cantilevers have no moment at rest, so that kappa = M_0/EI. On a foundation
+errors of the sum grow as exp(L (k/(4 EI))^(1/4)), of which model/case_table.py allows exp(20).
 
 A section that rest would bend beyond its elastic interval yields, and the shape is sought anew: by
 turns, which only lowers the energy. Since a beam swings about its rest, that is rare.
@@ -57,14 +59,18 @@ def end_tangents(
 
 
 @compiled
-def _end(grid: BeamGrid, kind: int, turn: float, lift: float, EI: float) -> tuple[float, float]:
+def _end(
+    grid: BeamGrid, kind: int, turn: float, lift: float, EI: float, bed: float
+) -> tuple[float, float]:
     """Return stiffnesses of an end: of the first half spacing against the slope there (N m).
 
-    And against deflection (N/m), -1 where it has none.
+    And against deflection (N/m), that of the foundation under it included, -1 where it has none.
     """
     holds = 1.0 if kind in (CLAMPED, SYMMETRIC) else turn
-    spring = -1.0 if kind in (CLAMPED, PINNED) else 0.5 * EI * lift / grid.dx**3
-    return 2.0 * EI / grid.dx * holds, spring
+    if kind in (CLAMPED, PINNED):
+        return 2.0 * EI / grid.dx * holds, -1.0
+    spring = 0.0 if kind == SYMMETRIC else 0.5 * EI * lift / grid.dx**3
+    return 2.0 * EI / grid.dx * holds, spring + 0.5 * grid.dx * bed
 
 
 @compiled
@@ -77,14 +83,15 @@ def _shoot(
     EI: float,
     softness: float,
     grid: BeamGrid,
+    bed: float,
 ) -> tuple[float, float]:
     """Set w (m) and psi from the left end on; return what both conditions of the right one miss.
 
     share: of M_0 that counts. start: psi beside the left end, and its deflection (m) where that is
-    free, else the shear force (N). softness: 1/(k G A).
+    free, else the shear force (N). softness: 1/(k G A). bed: of the foundation (N/m2).
     """
     first, stop, dx = grid.first - 1, grid.stop, grid.dx
-    turn, spring = _end(grid, grid.left, grid.turn_left, grid.lift_left, EI)
+    turn, spring = _end(grid, grid.left, grid.turn_left, grid.lift_left, EI, bed)
     slope, w[first] = start[0], start[1] if spring >= 0.0 else 0.0
     Q = spring * w[first] if spring >= 0.0 else start[1]
     M = share * M_0[first] - turn * slope
@@ -92,27 +99,29 @@ def _shoot(
     for i in range(first + 1, stop):
         M += dx * Q
         slope += dx * (share * M_0[i] - M) / EI
+        Q += dx * bed * w[i]
         psi[i], w[i + 1] = slope, w[i] + dx * (slope + softness * Q)
-    turn, spring = _end(grid, grid.right, grid.turn_right, grid.lift_right, EI)
+    turn, spring = _end(grid, grid.right, grid.turn_right, grid.lift_right, EI, bed)
     missed = w[stop] if spring < 0.0 else Q + spring * w[stop]
     return M + dx * Q - share * M_0[stop] - turn * slope, missed
 
 
 @compiled
 def static_shape(
-    w: Array, psi: Array, M_0: Array, EI: float, softness: float, grid: BeamGrid
+    w: Array, psi: Array, M_0: Array, EI: float, softness: float, grid: BeamGrid, bed: float
 ) -> float:
     """Set the deflection w (m) and psi at rest under the moments M_0 (N m); return Q (N).
 
-    softness: 1/(k G A), 0 without shear.
+    That is the first one from the left. softness: 1/(k G A), 0 without shear. bed: stiffness of the
+    foundation (N/m2).
     """
-    a, b = _shoot(w, psi, M_0, 1.0, (0.0, 0.0), EI, softness, grid)
-    a_turn, b_turn = _shoot(w, psi, M_0, 0.0, (1.0, 0.0), EI, softness, grid)
-    a_push, b_push = _shoot(w, psi, M_0, 0.0, (0.0, 1.0), EI, softness, grid)
+    a, b = _shoot(w, psi, M_0, 1.0, (0.0, 0.0), EI, softness, grid, bed)
+    a_turn, b_turn = _shoot(w, psi, M_0, 0.0, (1.0, 0.0), EI, softness, grid, bed)
+    a_push, b_push = _shoot(w, psi, M_0, 0.0, (0.0, 1.0), EI, softness, grid, bed)
     det = a_turn * b_push - a_push * b_turn
     start = (a_push * b - b_push * a) / det, (b_turn * a - a_turn * b) / det
-    _shoot(w, psi, M_0, 1.0, start, EI, softness, grid)
-    _, spring = _end(grid, grid.left, grid.turn_left, grid.lift_left, EI)
+    _shoot(w, psi, M_0, 1.0, start, EI, softness, grid, bed)
+    _, spring = _end(grid, grid.left, grid.turn_left, grid.lift_left, EI, bed)
     return spring * start[1] if spring >= 0.0 else start[1]
 
 
@@ -149,11 +158,13 @@ def yield_on(
 
 
 @compiled
-def settle(beam: BeamState, plastic: PlasticState, section: FibreSection, grid: BeamGrid) -> None:
-    """Put Euler-Bernoulli's beam to rest."""
+def settle(
+    beam: BeamState, plastic: PlasticState, section: FibreSection, grid: BeamGrid, bed: float
+) -> None:
+    """Put Euler-Bernoulli's beam to rest. bed: stiffness of the foundation (N/m2)."""
     end_tangents(beam, plastic, section, grid)
     for _ in range(ROUNDS):
-        static_shape(beam.w[0], beam.u, plastic.M_0, section.stiffness, 0.0, grid)
+        static_shape(beam.w[0], beam.u, plastic.M_0, section.stiffness, 0.0, grid, bed)
         rest_nodes(beam, grid)
         if not yield_on(beam, None, plastic, section, grid):
             break

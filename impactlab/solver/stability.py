@@ -8,7 +8,7 @@ Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
                       spring of an elastic end adds 2 k_t/(rho A dx),
                       and a foundation k/(rho A)
     Timoshenko beam   4 (EI)_q/(rho I dx^2) + k G A/(rho I) + 4 k G A/(rho A dx^2) as first term
-                      with any ends, too
+                      with any ends, too, and with springs and foundation as above
     von Karman's      4 (1 + s^2) E/(rho dx^2) beside the first term, of stretching under the slope
     beam              s; 0.3 is taken for s, up to which rotations count as moderate
     strip             beside Timoshenko's (D_s + 4 T/dx^2)/m + 4 nu^2 D_s/(rho I dx^2), and the
@@ -187,13 +187,14 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
             omega_squared += 4.0 * case.beam_poissons_ratio**2 * D_s / (inertia * dx**2)
             contact += k_c * case.width_lever**2 / (case.width_inertia * dx)
     else:
-        left = case.stiffness_left if case.support_left == SPRUNG else 0.0
-        right = case.stiffness_right if case.support_right == SPRUNG else 0.0
-        omega_squared = 16.0 * EI / (mu * dx**4) + 2.0 * max(left, right) / (mu * dx)
-        if case.beam_model == VON_KARMAN:
-            wave_squared = case.beam_youngs_modulus / case.beam_density
-            omega_squared += 4.0 * (1.0 + LARGEST_SLOPE**2) * wave_squared / dx**2
-        omega_squared += case.foundation_stiffness / mu
+        omega_squared = 16.0 * EI / (mu * dx**4)
+    left = case.stiffness_left if case.support_left == SPRUNG else 0.0
+    right = case.stiffness_right if case.support_right == SPRUNG else 0.0
+    omega_squared += 2.0 * max(left, right) / (mu * dx)
+    if case.beam_model == VON_KARMAN:
+        wave_squared = case.beam_youngs_modulus / case.beam_density
+        omega_squared += 4.0 * (1.0 + LARGEST_SLOPE**2) * wave_squared / dx**2
+    omega_squared += case.foundation_stiffness / mu
     dt = 2.0 / math.sqrt(omega_squared + contact)
     lag = 0.25 * case.stiffness_damping * omega_squared * dt
     return _damped(dt, 0.5 * c * contact / k_c * dt + lag)

@@ -44,9 +44,18 @@ import numpy as np
 from impactlab.solver import timoshenko
 from impactlab.solver.beam import CLAMPED, SYMMETRIC, BeamGrid
 from impactlab.solver.contact.axis_lift import axis_lift
+from impactlab.solver.contact_patch import spread_over_nodes
 from impactlab.solver.fibre_plasticity import curvature, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
 from impactlab.solver.kink import bend_back
+from impactlab.solver.resisted_shear import (
+    ShearResistance,
+    make_resistance,
+    move_resisted,
+    resisted_energy,
+    rest_resistance,
+    take_work,
+)
 from impactlab.solver.section import FibreSection
 from impactlab.solver.settle import ROUNDS, end_tangents, yield_on
 from impactlab.solver.state import State
@@ -64,7 +73,8 @@ class Strip(NamedTuple):
     lever: l (m2). axis (m/N, m2): how much lower than the middle of the section the axis lies, per
     F and per M/(EI); lifting: the last arguments of contact/axis_lift.py, by how much it lies
     higher again. s (1/m): the curvature across the width, rate = dt s_t its increment, d_rate the
-    last change of that; bent = s + nu kappa, where the step began.
+    last change of that; bent = s + nu kappa, where the step began. resistance: of the beam, which
+    no strip has.
     """
 
     shear: Shear
@@ -79,6 +89,7 @@ class Strip(NamedTuple):
     rate: Array
     d_rate: Array
     bent: Array
+    resistance: ShearResistance
 
 
 @allocating
@@ -100,18 +111,24 @@ def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Strip:
         np.zeros(size),
         np.zeros(size),
         np.zeros(size),
+        make_resistance(case, section, grid),
     )
 
 
 @inlined
 def _step(state: State, now: int, F: float) -> None:
     _, section, grid, beam, plastic, strip = state
+    if strip.resistance.acts:
+        take_work(beam, strip.shear, strip.resistance, grid)
     per_dx = timoshenko.bend_sections(section, grid, beam, plastic, strip.shear, now)
     if strip.inertia > 0.0:
         _stretch(strip, per_dx, grid.last)
         _push_back(strip, -1.0, grid.last)
         _swing(strip, grid.dt**2 / strip.inertia, per_dx, F, grid)
-    timoshenko.move(grid, beam, strip.shear, now, F, per_dx)
+    if strip.resistance.acts:
+        move_resisted(grid, beam, strip.shear, strip.resistance, now, F, per_dx)
+    else:
+        timoshenko.move(grid, beam, strip.shear, now, F, per_dx)
 
 
 @vectorised
@@ -209,14 +226,15 @@ def _rest_across(strip: Strip, per_dx: float, grid: BeamGrid) -> float:
 def _settle(state: State) -> None:
     """Put beam and width to rest by turns: each changes the other's part by a tenth."""
     _, section, grid, beam, plastic, strip = state
-    shear, per_dx = strip.shear, 1.0 / grid.dx
+    shear, per_dx, bed = strip.shear, 1.0 / grid.dx, strip.resistance.bed * grid.mu / grid.dt**2
+    rest_resistance(strip.resistance)
     end_tangents(beam, plastic, section, grid)
     for i in range(strip.bent.size):
         strip.bent[i] = 0.0
     for _ in range(ROUNDS):
         for i in range(2, grid.last + 1):
             shear.M[i] = plastic.M_0[i] - strip.nu * strip.stiffness * strip.bent[i]
-        timoshenko.rest(section, grid, beam, plastic, shear, shear.M)
+        timoshenko.rest(section, grid, beam, plastic, shear, shear.M, bed)
         change = 0.0
         if strip.inertia > 0.0:
             change = _rest_across(strip, per_dx, grid)
@@ -239,7 +257,12 @@ def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     if strip.inertia > 0.0:
         _push_back(strip, 1.0, grid.last)  # the fibres' own moments; the next step sets them anew
         total += _width_energy(strip, grid)
-    return total + timoshenko.shear_energy(beam, strip.shear, plastic.M_0, section.stiffness, grid)
+    shear = strip.shear
+    total += timoshenko.shear_energy(beam, shear, plastic.M_0, section.stiffness, grid)
+    total += timoshenko.spring_energy(beam, now, shear.psi, shear.spin, grid)
+    if strip.resistance.acts:
+        total += resisted_energy(beam, now, shear, strip.resistance, grid)
+    return total
 
 
 @compiled
@@ -283,11 +306,20 @@ def _bend_back(state: State, now: int, contact: Record, growth: float) -> None:
     contact.kink_work += 0.5 * (before + after) * growth
 
 
+@compiled
+def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
+    ahead, _, _ = spread_over_nodes(
+        state.beam, state.grid, now, F / (1.0 + state.extra.resistance.h), a
+    )
+    return ahead, 0.0
+
+
 MODEL = timoshenko.MODEL._replace(
     make=_make,
     step=_step,
     curvature=_curvature,
     energy=_energy,
+    spread=_spread,
     sag=_sag,
     beneath=_beneath,
     lift=_lift,

@@ -13,12 +13,13 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver.beam import (
+    FREE,
     PINNED,
+    SPRUNG,
     BeamGrid,
     BeamState,
     copies,
     mirror,
-    mirror_rotation,
 )
 from impactlab.solver.contact_patch import spread_over_nodes
 from impactlab.solver.euler_bernoulli import deflected
@@ -93,11 +94,36 @@ def bend_sections(
 
 
 @inlined
-def mirror_shear(Q: Array, grid: BeamGrid) -> None:
-    """Set the shear forces beyond the ends, as mirror_rotation; odd, but where nothing moves."""
+def mirror_rotation(psi: Array, grid: BeamGrid) -> None:
+    """Set the rotations beyond both ends, half-way from node i to i + 1 at index i.
+
+    They are odd about an end that is clamped or symmetric, even about a free one, where the section
+    does not bend, and in between about an elastic one; half-way from a pinned end lies no such
+    node.
+    """
+    if grid.left == SPRUNG:
+        psi[1] = (1.0 - 2.0 * grid.turn_left) * psi[2]
+    elif grid.left != PINNED:
+        psi[1] = psi[2] if grid.left == FREE else -psi[2]
+    if grid.right == SPRUNG:
+        psi[grid.last] = (1.0 - 2.0 * grid.turn_right) * psi[grid.last - 1]
+    elif grid.right != PINNED:
+        psi[grid.last] = psi[grid.last - 1] if grid.right == FREE else -psi[grid.last - 1]
+
+
+@inlined
+def mirror_shear(Q: Array, w: Array, grid: BeamGrid) -> None:
+    """Set the shear forces beyond the ends, as mirror_rotation; odd, but where nothing moves.
+
+    w: deflections (m), against which the springs of elastic ends push.
+    """
     Q[grid.first - 2] = -Q[grid.first - 1]
     if grid.right != PINNED:
         Q[grid.last] = -Q[grid.last - 1]
+    if grid.left == SPRUNG:
+        Q[1] += grid.lift_left * grid.stiffness / grid.push * w[2]
+    if grid.right == SPRUNG:
+        Q[grid.last] -= grid.lift_right * grid.stiffness / grid.push * w[grid.last]
 
 
 @inlined
@@ -106,7 +132,7 @@ def move(grid: BeamGrid, beam: BeamState, shear: Shear, now: int, F: float, per_
     Q, mid = shear.Q, grid.mid
     _rotate(beam.w, now, shear, grid.dt**2 / shear.inertia, per_dx, grid.first - 1, grid.stop)
     mirror_rotation(shear.psi, grid)
-    mirror_shear(Q, grid)
+    mirror_shear(Q, beam.w[now], grid)
     _shift(beam.w, now, beam.u, beam.du, Q, grid.push, F / copies(grid, mid), mid, 2)
     if grid.last > mid:
         _shift(beam.w, now, beam.u, beam.du, Q, grid.push, 0.0, grid.last, mid + 1)
@@ -199,6 +225,24 @@ def shear_energy(beam: BeamState, shear: Shear, M_0: Array, EI: float, grid: Bea
 
 
 @compiled
+def spring_energy(beam: BeamState, now: int, psi: Array, spin: Array, grid: BeamGrid) -> float:
+    """Return the energy (J) of elastic ends after a step, at its beginning.
+
+    Half a spacing beside an end has its part of that of rotation among the sections'.
+    """
+    EI_per_dx = grid.stiffness / grid.factor * grid.dx
+    total, last = 0.0, grid.last
+    for kind, end, i, turn, lift in (
+        (grid.left, 2, 2, grid.turn_left, grid.lift_left),
+        (grid.right, last, last - 1, grid.turn_right, grid.lift_right),
+    ):
+        if kind == SPRUNG:
+            deflection, slope = beam.w[now, end] / grid.dx, psi[i] - spin[i]
+            total += 0.25 * lift * deflection * deflection + turn * (1.0 - turn) * slope * slope
+    return grid.copies * EI_per_dx * total
+
+
+@compiled
 def _curvature(state: State, now: int) -> float:
     return curvature(state.beam.w, now, state.extra.psi, state.grid, np.uint64(state.grid.mid))
 
@@ -208,7 +252,8 @@ def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
     EI = state.section.stiffness
     elastic = shear_energy(state.beam, state.extra, state.plastic.M_0, EI, state.grid)
-    return stored + dissipated + elastic
+    springs = spring_energy(state.beam, now, state.extra.psi, state.extra.spin, state.grid)
+    return stored + dissipated + elastic + springs
 
 
 @compiled
@@ -225,10 +270,17 @@ def rest(
     plastic: PlasticState,
     shear: Shear,
     M_0: Array,
+    bed: float,
 ) -> None:
-    """Let nothing move, in the static shape under the moments M_0 (N m)."""
-    Q = static_shape(beam.w[0], shear.psi, M_0, section.stiffness, 1.0 / shear.stiffness, grid)
+    """Let nothing move, in the static shape under the moments M_0 (N m).
+
+    bed: stiffness of the foundation (N/m2).
+    """
+    EI, softness = section.stiffness, 1.0 / shear.stiffness
+    Q = static_shape(beam.w[0], shear.psi, M_0, EI, softness, grid, bed)
     for i in range(shear.Q.size):
+        if grid.first <= i < grid.stop:
+            Q += grid.dx * bed * beam.w[0, i]
         shear.Q[i], shear.spin[i], shear.d_spin[i] = Q, 0.0, 0.0
     rest_nodes(beam, grid)
     mirror_rotation(shear.psi, grid)
@@ -240,7 +292,7 @@ def _settle(state: State) -> None:
     _, section, grid, beam, plastic, shear = state
     end_tangents(beam, plastic, section, grid)
     for _ in range(ROUNDS):
-        rest(section, grid, beam, plastic, shear, plastic.M_0)
+        rest(section, grid, beam, plastic, shear, plastic.M_0, 0.0)
         if not yield_on(beam, shear.psi, plastic, section, grid):
             break
     _moments(shear, plastic, section.stiffness, 1.0 / grid.dx, grid.last)

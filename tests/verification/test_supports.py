@@ -20,7 +20,6 @@ from impactlab.solver.beam import (
     make_beam,
     make_grid,
     mirror,
-    mirror_rotation,
     move_virgin,
 )
 from impactlab.solver.contact.history import make_pair
@@ -120,7 +119,7 @@ def timoshenko_frequencies(impact, left, right, nodes):
             shear = timoshenko.MODEL.make(case, section, grid)
             (shear.psi if part else beam.w[0])[i] = 1e-9
             mirror(beam.w, 1, beam.u, grid)
-            mirror_rotation(shear.psi, grid)
+            timoshenko.mirror_rotation(shear.psi, grid)
             timoshenko.MODEL.step(
                 State(make_pair(case), section, grid, beam, plastic, shear), 0, 0.0
             )

@@ -27,7 +27,13 @@ from impactlab.model.impact import (
 from impactlab.model.parameters import PARAMETERS, SECTION, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.model.quantities import shown
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS, RESISTANCES
+from impactlab.solver import (
+    BEAM_MODELS,
+    BENDING_MODELS,
+    LUMPED_MODELS,
+    RESISTANCES,
+    SPRUNG_MODELS,
+)
 from impactlab.study.schema.declarations import FunctionStudy, ImpactStudy, StudyFile
 from impactlab.validation.errors import unknown
 from impactlab.validation.refusals import Base, refused_corner
@@ -221,7 +227,7 @@ def _other_beams(file: StudyFile, models: set[Value]) -> Reasons:
     if models - set(MOVING_MODELS):
         reason = f"must be {' or '.join(MOVING_MODELS)} {OTHER_BEAM}"
         yield key_of("beam_model", sampling), reason
-    elif "elastic" in supports and models - set(BENDING_MODELS):
+    elif "elastic" in supports and models - set(SPRUNG_MODELS):
         yield key_of("beam_model", sampling), f"must be {SPRUNG_BEAM}"
 
 
@@ -230,7 +236,7 @@ def _resisted_beams(file: StudyFile, ends: Extremes) -> Reasons:
     sampling, grid = file.sampling, file.discretisation[0]
     resisted = any(ends[name][1] > 0.0 for name in RESISTANCES)
     models = set(values_of(sampling, "beam_model", file.impact.beam_model))
-    if resisted and models - set(BENDING_MODELS):
+    if resisted and models - set(SPRUNG_MODELS):
         yield key_of("beam_model", sampling), f"must be {RESISTED_BEAM}"
     schemes = values_of(sampling, "scheme", grid.scheme)
     if ends["damping_ratio"][1] > 0.0 and "leapfrog" in schemes:

@@ -1,0 +1,272 @@
+"""Timoshenko beams on springs, damped, on a foundation: closed forms, decrement, energy, limits."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import cumulative_trapezoid
+from scipy.linalg import expm
+from scipy.optimize import brentq
+
+import impactlab as il
+from impactlab.model.case_table import case_table
+from impactlab.solve import fibre_section
+from impactlab.solver import strip, timoshenko
+from impactlab.solver.beam import make_beam, mirror
+from impactlab.solver.contact.history import make_pair
+from impactlab.solver.fibre_plasticity import make_plastic_state
+from impactlab.solver.stability import discretise
+from impactlab.solver.state import State
+
+from .test_resistance import observed
+
+pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+
+BED = {"foundation_stiffness": 3e7}
+RAYLEIGH = {"mass_damping": 60.0, "stiffness_damping": 1e-5}
+SPRINGS = {
+    "support_left": "elastic",
+    "stiffness_left": 2e7,
+    "rotational_stiffness_left": 1e5,
+    "support_right": "elastic",
+    "stiffness_right": 3e6,
+    "rotational_stiffness_right": 2e4,
+}
+CANTILEVER = {
+    "support_left": "elastic",
+    "rotational_stiffness_left": 3e5,
+    "stiffness_left": 1e8,
+    "support_right": "free",
+}
+
+
+def beam_of(velocity=0.5, model="timoshenko", radius=0.01, place=0.5, load="point", **values):
+    impact = il.paper_impact(velocity, "hertz")
+    sphere, beam = replace(impact.sphere, radius=radius), replace(impact.beam, **values)
+    return replace(
+        impact, sphere=sphere, beam=beam, beam_model=model, strike_position=place, load=load
+    )
+
+
+def ends(beam):
+    """The conditions of both ends on w, psi, M = EI psi_x and Q, over the units of `matrix`."""
+    EI, L, rows = beam.bending_stiffness, beam.span, []
+    for side, inward in (("left", 1.0), ("right", -1.0)):
+        k_t, k_r = {"pinned": (np.inf, 0.0), "clamped": (np.inf, np.inf), "free": (0.0, 0.0)}.get(
+            getattr(beam, f"support_{side}"),
+            (
+                getattr(beam, f"stiffness_{side}") * L**3 / EI,
+                getattr(beam, f"rotational_stiffness_{side}") * L / EI,
+            ),
+        )
+        t, r = (1.0 if np.isinf(k) else k / (k + 1.0) for k in (k_t, k_r))
+        rows.append([[t, 0, 0, -inward * (1.0 - t)], [0, r, -inward * (1.0 - r), 0]])
+    return np.array(rows)
+
+
+def matrix(impact, speed):
+    """d/dx of w, psi, M and Q at a frequency (rad/s), in units of span and EI."""
+    beam = impact.beam
+    EI, L = beam.bending_stiffness, beam.span
+    case = case_table(impact, il.Discretisation(), duration=1e-3)[0]
+    held = beam.foundation_stiffness - beam.mass_per_length * speed**2
+    return np.array(
+        [
+            [0, 1, 0, EI / L**2 / case.shear_stiffness],
+            [0, 0, 1, 0],
+            [0, -case.rotary_inertia * speed**2 * L**2 / EI, 0, -1],
+            [held * L**4 / EI, 0, 0, 0],
+        ]
+    )
+
+
+def determinant(impact, speed):
+    """Zero at a frequency (rad/s), by exponentials across the span."""
+    left, right = ends(impact.beam)
+    across = expm(matrix(impact, speed)) @ np.linalg.svd(left)[2][2:].T
+    return np.linalg.det(right @ across)
+
+
+def frequencies(impact, nodes):
+    """Return the frequencies of the solver's beam (rad/s), ascending, from its accelerations."""
+    case = case_table(impact, il.Discretisation(nodes=nodes), duration=1e-3)[0]
+    section, columns = fibre_section(case), []
+    grid, _ = discretise(case, make_pair(case), section)
+    deflected, turned = slice(2, grid.last + 1), slice(grid.first - 1, grid.stop)
+    for part, moved in ((0, deflected), (1, turned)):
+        for i in range(moved.start, moved.stop):
+            beam, plastic = make_beam(grid), make_plastic_state(grid, section)
+            extra = strip.MODEL.make(case, section, grid)
+            shear = extra.shear
+            (shear.psi if part else beam.w[0])[i] = 1e-9
+            mirror(beam.w, 1, beam.u, grid)
+            timoshenko.mirror_rotation(shear.psi, grid)
+            strip.MODEL.step(State(make_pair(case), section, grid, beam, plastic, extra), 0, 0.0)
+            columns.append(np.append(beam.u[deflected], shear.spin[turned]) / (-1e-9 * grid.dt**2))
+    values = np.sort(np.linalg.eigvals(np.array(columns).T).real)
+    assert 2 / np.sqrt(values[-1]) >= grid.dt  # stable
+    return np.sqrt(np.maximum(values, 0.0))
+
+
+@pytest.mark.long  # the step is compiled by itself
+@pytest.mark.parametrize(
+    "values",
+    [SPRINGS, CANTILEVER, BED, SPRINGS | BED, {"support_right": "free"} | BED],
+    ids=["springs", "cantilever", "bed", "both", "free"],
+)
+def test_frequencies_converge_at_second_order_to_the_characteristic_equation(values):
+    impact, errors = beam_of(place=0.4, **values), []
+    for nodes in (41, 81):
+        ours = frequencies(impact, nodes)[:4]
+        bounds = ([0.97 * f, 1.03 * f] for f in ours)
+        exact = [brentq(lambda speed: determinant(impact, speed), *bound) for bound in bounds]
+        errors.append(ours / exact - 1)
+    assert np.abs(errors[1]).max() < 6e-3
+    assert np.abs(errors[1]) == pytest.approx(np.abs(errors[0]) / 4, rel=0.1, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [{"mass_damping": 60.0}, {"stiffness_damping": 1e-5}, RAYLEIGH | BED],
+    ids=["mass", "stiffness", "all"],
+)
+def test_free_vibration_has_the_logarithmic_decrement(values):
+    """Of two modes of the grid, sines of w and psi: zeta = alpha/(2 omega) + beta omega/2."""
+    impact, n = beam_of(**values), np.array([1, 3])
+    case = case_table(impact, il.Discretisation(), duration=1e-3)[0]
+    EI, kGA, beam = fibre_section(case).stiffness, case.shear_stiffness, impact.beam
+    s = 200 / beam.span * np.sin(n * np.pi / 200)
+    omega = []
+    for wave in s:
+        stiffness = np.array(
+            [
+                [kGA * wave**2 + beam.foundation_stiffness, -kGA * wave],
+                [-kGA * wave, EI * wave**2 + kGA],
+            ]
+        )
+        inertia = np.diag([beam.mass_per_length, case.rotary_inertia])
+        omega.append(np.sqrt(np.linalg.eigvals(np.linalg.solve(inertia, stiffness)).min()))
+    omega = np.array(omega)
+    zeta = beam.mass_damping / (2 * omega) + beam.stiffness_damping * omega / 2
+    expected = zeta * omega, omega * np.sqrt(1 - zeta**2)
+    shapes = [lambda x, n=n: np.sin(n * np.pi * x) for n in (1, 3)]
+    ours = observed(impact, "leapfrog", 101, shapes, np.transpose(expected))
+    assert ours == pytest.approx(np.array(expected), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("values", "load", "velocity"),
+    [
+        (SPRINGS, "point", 10.0),
+        (CANTILEVER | BED, "contact_patch", 10.0),
+        ({}, "contact_patch", 10.0),
+        (BED, "point", 1.0),
+    ],
+    ids=["springs", "cantilever", "pinned", "elastic"],
+)
+def test_the_balance_of_energy_counts_springs_foundation_and_damping(values, load, velocity):
+    """Within a tenth of the law's own error of time steps, though damping takes much."""
+    grid, place = il.Discretisation(nodes=65, points=9), 0.5 if load == "point" else 0.25
+    runs = [
+        il.simulate(
+            beam_of(velocity, radius=0.035, place=place, load=load, **values, **damping),
+            grid,
+            duration=4e-3,
+        )
+        for damping in ({}, {"mass_damping": 200.0, "stiffness_damping": 1e-5})
+    ]
+    assert [run.energy_error.item() < 5e-4 for run in runs] == [True, True]
+    lower = [np.abs(run.midspan_deflection[-400:]).max().item() for run in runs]
+    assert lower[1] < 0.95 * lower[0]
+    assert (velocity > 1.0) == bool(runs[1].plastic_dissipation.item() > 0.0)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [BED, SPRINGS, SPRINGS | BED, {"support_left": "free", "support_right": "free"} | BED],
+    ids=["bed", "springs", "both", "free"],
+)
+def test_a_sphere_at_rest_bends_the_beam_as_in_statics(values):
+    """By w = m g times the closed form's flexibility, shear included, once damping has its way."""
+    impact = beam_of(1e-3, radius=0.035, mass_damping=1500.0, **values)
+    impact = replace(impact, gravity=50.0)
+    run = il.simulate(impact, il.Discretisation(nodes=41), duration=0.05, samples=2001)
+    late = slice(1500, None)
+    force = impact.sphere.total_mass * impact.gravity
+    assert run.contact_force.values[late].mean() == pytest.approx(force, rel=1e-3)
+    half, (left, right) = expm(0.5 * matrix(impact, 0.0)), ends(impact.beam)
+    start = np.linalg.svd(left)[2][2:].T
+    beam = impact.beam
+    jump = np.array([0.0, 0.0, 0.0, -force * beam.span**2 / beam.bending_stiffness])
+    open_ends = np.linalg.solve(right @ half @ half @ start, -right @ half @ jump)
+    exact = beam.span * (half @ start @ open_ends)[0]
+    assert run.midspan_deflection.values[late].mean() == pytest.approx(exact, rel=3e-3)
+
+
+@pytest.mark.parametrize("values", [SPRINGS | RAYLEIGH | BED, RAYLEIGH, BED])
+def test_a_slender_beam_moves_as_euler_bernoullis(values):
+    """Whose deflections, integrated twice as springs would, follow within the square of H/L."""
+    size = {"depth": 6e-3, "width": 0.6}
+    springs = {name: value / 100 for name, value in values.items() if "stiffness_" in name}
+    springs.pop("stiffness_damping", None)
+    values = values | springs
+    histories = []
+    for model in ("euler_bernoulli", "timoshenko"):
+        impact = beam_of(0.05, model, 0.035, **size, **values)
+        run = il.simulate(impact, il.Discretisation(nodes=41), duration=6e-3, samples=601)
+        histories.append(cumulative_trapezoid(run.midspan_deflection.values))
+    size = np.abs(histories[0]).max()
+    assert np.abs(histories[1] - histories[0]).max() < 5e-3 * size
+
+
+def test_vanishing_resistance_changes_nothing():
+    runs = [
+        il.simulate(
+            beam_of(12.0, radius=0.035, load="contact_patch", **values),
+            il.Discretisation(nodes=41, points=9),
+            duration=4e-3,
+        )
+        for values in ({}, {"mass_damping": 1e-9}, {"foundation_stiffness": 1e-3})
+    ]
+    for name in ("peak_force", "impulse", "plastic_dissipation", "maximum_deflection"):
+        plain, *others = (run[name].item() for run in runs)
+        assert others == pytest.approx([plain, plain], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("ends", "limit"),
+    [((1e-9, 0.0), "free"), ((1e15, 0.0), "pinned"), ((1e13, 1e13), "clamped")],
+)
+def test_springs_have_the_other_ends_as_limits(ends, limit):
+    sides = itertools.product(("left", "right"), zip(("", "rotational_"), ends, strict=True))
+    springs = {f"{kind}stiffness_{side}": value for side, (kind, value) in sides}
+    ours, plain = (
+        beam_of(radius=0.035, place=0.25, support_left=kind, support_right=kind, **values)
+        for kind, values in (("elastic", springs), (limit, {}))
+    )
+    grid = il.Discretisation(nodes=41, courant=0.9)
+    ours, other = (il.simulate(impact, grid, duration=1e-3) for impact in (ours, plain))
+    size = np.abs(other.midspan_deflection).max().item()
+    difference = ours.midspan_deflection.values - other.midspan_deflection.values
+    assert np.abs(difference).max() < 1e-3 * size
+
+
+@pytest.mark.parametrize(
+    ("values", "change", "message"),
+    [
+        (BED, {"contact_compliance": "strip"}, "needs a beam without foundation_stiffness: set"),
+        (RAYLEIGH, {"contact_compliance": "strip"}, "needs a beam without mass_damping: set"),
+        (BED, {"contact_prestress": "bending"}, "must be ignored on a foundation"),
+        (BED, {"beam_model": "von_karman"}, "must be euler_bernoulli or elastic or timoshenko"),
+        ({"damping_ratio": 0.01}, {}, "damping_ratio = 0.01: is of modes"),
+        (
+            {"foundation_stiffness": 1e12},
+            {"strikes": 2},
+            r"^strikes = 2: must be 1 on so stiff a foundation",
+        ),
+    ],
+)
+def test_what_springs_and_damping_cannot_have_is_refused(values, change, message):
+    with pytest.raises(ValueError, match=message):
+        case_table(replace(beam_of(**values), **change), il.Discretisation(), duration=1e-3)
