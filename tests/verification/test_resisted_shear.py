@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import cumulative_trapezoid
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
@@ -187,6 +186,7 @@ def test_the_balance_of_energy_counts_springs_foundation_and_damping(values, loa
     [BED, SPRINGS, SPRINGS | BED, {"support_left": "free", "support_right": "free"} | BED],
     ids=["bed", "springs", "both", "free"],
 )
+@pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning")
 def test_a_sphere_at_rest_bends_the_beam_as_in_statics(values):
     """By w = m g times the closed form's flexibility, shear included, once damping has its way."""
     impact = beam_of(1e-3, radius=0.035, mass_damping=1500.0, **values)
@@ -204,20 +204,19 @@ def test_a_sphere_at_rest_bends_the_beam_as_in_statics(values):
     assert run.midspan_deflection.values[late].mean() == pytest.approx(exact, rel=3e-3)
 
 
-@pytest.mark.parametrize("values", [SPRINGS | RAYLEIGH | BED, RAYLEIGH, BED])
+@pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning")
+@pytest.mark.parametrize("values", [SPRINGS | RAYLEIGH | BED, SPRINGS, RAYLEIGH, BED])
 def test_a_slender_beam_moves_as_euler_bernoullis(values):
-    """Whose deflections, integrated twice as springs would, follow within the square of H/L."""
-    size = {"depth": 6e-3, "width": 0.6}
-    springs = {name: value / 100 for name, value in values.items() if "stiffness_" in name}
-    springs.pop("stiffness_damping", None)
-    values = values | springs
+    """Under a soft sphere, whose contact is as long as the beam swings."""
     histories = []
     for model in ("euler_bernoulli", "timoshenko"):
-        impact = beam_of(0.05, model, 0.035, **size, **values)
+        impact = beam_of(0.05, model, 0.035, depth=6e-3, width=0.6, **values)
+        soft = replace(impact.sphere.material, youngs_modulus=1e8, yield_stress=1e7)
+        impact = replace(impact, sphere=replace(impact.sphere, material=soft))
         run = il.simulate(impact, il.Discretisation(nodes=41), duration=6e-3, samples=601)
-        histories.append(cumulative_trapezoid(run.midspan_deflection.values))
+        histories.append(run.midspan_deflection.values)
     size = np.abs(histories[0]).max()
-    assert np.abs(histories[1] - histories[0]).max() < 5e-3 * size
+    assert np.abs(histories[1] - histories[0]).max() < 2e-3 * size
 
 
 def test_vanishing_resistance_changes_nothing():
