@@ -50,8 +50,9 @@ def main(meshes: Sequence[float]) -> None:
             ours = replace(impact, **MODELS[model])
             rows.append(labels | {"model": model} | differences(ours, witness))
     table = pd.DataFrame(rows)[["strike_position", "supports", "model", *RESPONSES]]
-    table.round(2).to_csv(ROOT / "docs" / "agreement_places.csv", index=False)
-    print(table.round(2).to_string(index=False))
+    table = table.round(dict.fromkeys(RESPONSES, 2))
+    table.to_csv(ROOT / "docs" / "agreement_places.csv", index=False)
+    print(table.to_string(index=False))
 
 
 if __name__ == "__main__":
