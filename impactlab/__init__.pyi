@@ -15,7 +15,7 @@ from .methods.distributions import TruncatedNormal as TruncatedNormal
 from .methods.distributions import Uniform as Uniform
 from .methods.fast import Fast as Fast
 from .methods.grid import Grid as Grid
-from .methods.latin import Latin as Latin
+from .methods.hypercube import Latin as Latin
 from .methods.morris import Morris as Morris
 from .methods.pawn import Pawn as Pawn
 from .methods.rbd_fast import RbdFast as RbdFast
@@ -31,7 +31,7 @@ from .model.material import Material as Material
 from .model.plausibility import ImplausibleWarning as ImplausibleWarning
 from .model.plausibility import TooShortWarning as TooShortWarning
 from .report.answer import answers as answers
-from .report.explanation import explain as explain
+from .report.console import explain as explain
 from .report.tables import table as table
 from .simulate import simulate as simulate
 from .simulate import simulate_many as simulate_many

@@ -15,7 +15,7 @@ import xarray as xr
 
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL, estimate
-from impactlab.analysis.sensitivity.imputation import imputed
+from impactlab.analysis.sensitivity.indices import imputed
 from impactlab.methods import sobol
 from impactlab.methods.estimators import half_width
 from impactlab.methods.runs import Sample, in_order, listed, usable

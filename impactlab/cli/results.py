@@ -1,16 +1,19 @@
-"""From solved runs to their analysis, predictions, figures and reports."""
+"""From solved runs to their analysis, predictions, inference, figures, animations and reports."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from impactlab.cli.interrupt import stop_solving
 from impactlab.cli.options import (
     RESULTS,
     RunsFile,
+    StudyFile,
     all_stored,
     assigned,
     chosen,
@@ -19,6 +22,10 @@ from impactlab.cli.options import (
     new_folder,
     stored_in,
 )
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 _STORED = "A study's runs.nc and analysis.nc, a verification's findings.nc, or results/NAME."
 StoredFiles = Annotated[
@@ -224,3 +231,97 @@ def compare(
     folder = output or results / str(comparison.attrs["study"])
     headline, *lines = str(comparison.attrs["answer"]).splitlines()
     print(f"{folder / 'report.html'}: {headline}", *lines, sep="\n")
+
+
+def calibrate(
+    study: StudyFile,
+    measurements: Annotated[
+        Path, typer.Argument(metavar="MEASUREMENTS", help="A file, measurements/NAME.yaml.")
+    ],
+    contact: Annotated[
+        str, typer.Option(help="Contact laws to weigh, such as stronge,mjg. Default: the study's.")
+    ] = "",
+    model_error: Annotated[
+        str, typer.Option(help="Standard error of the model itself, such as '3 %'.")
+    ] = "0",
+    workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
+) -> None:
+    """Infer parameters and weights of contact laws from measurements.
+
+    Solves the sample where it is not solved, calibrates its surrogate, and solves runs at the
+    posterior to confirm it. Writes calibration.nc and its report, calibration.html, to
+    results/NAME.
+    """
+    stop_solving()
+    from impactlab.report.calibration import draw_and_tell
+    from impactlab.study import steps
+    from impactlab.study.calibration import calibrate as calibration
+    from impactlab.study.engine import Engine
+    from impactlab.study.schema.readers import read_study
+
+    declared = read_study(study)
+    folder = steps.results_folder(declared.name)
+    laws = contact.replace(",", " ").split()
+    error = given("--model-error", model_error, "1")
+    posterior = calibration(declared, folder, measurements, Engine("threads", workers), laws, error)
+    for line in draw_and_tell(posterior, folder):
+        print(line)
+
+
+def animate(
+    stored: Annotated[
+        Path,
+        typer.Argument(
+            metavar="STORED",
+            help="Output of `impactlab simulate`, a study's runs.nc, or results/NAME.",
+            callback=stored_in("runs.nc"),
+        ),
+    ],
+    values: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[NAME=VALUE...]", help="A run of the study, such as velocity=5 contact=mjg."
+        ),
+    ] = None,
+    frames: Annotated[int, typer.Option(min=2, help="Frames, 25 per second.")] = 200,
+    output: Annotated[
+        Path | None,
+        new_file(".html", ".gif", ".mp4", help="Default: animation.html beside STORED."),
+    ] = None,
+) -> None:
+    """Animate one impact: beam, plastic zone and force.
+
+    The HTML file needs no other one. MP4 needs ffmpeg, or pip install 'impactlab[video]'.
+    """
+    from impactlab.figures.animation import animation, with_fields
+    from impactlab.files import opened
+
+    path = output or stored.with_name("animation.html")
+    with opened(stored, "impact", "runs") as runs:
+        run = with_fields(_selected(runs, assigned(values or [])), frames)
+        print(animation(run).save(path))
+
+
+def _selected(runs: xr.Dataset, texts: dict[str, str]) -> xr.Dataset:
+    """Return the runs with these values. Raises ValueError where there are none, naming all."""
+    import numpy as np
+
+    from impactlab.figures.access import design_dims
+    from impactlab.figures.labels import listing
+    from impactlab.validation.errors import unknown
+
+    dims = {*design_dims(runs)}
+    parameters = [str(name) for name, array in runs.coords.items() if dims.intersection(array.dims)]
+    for name, text in texts.items():
+        if name not in parameters:
+            raise ValueError(f"{name}: {unknown('parameter', name, parameters)}")
+        array = runs[name]
+        if array.dtype.kind in "if":
+            matches = np.isclose(array, given(name, text, array.attrs.get("units", "1")), atol=0.0)
+        else:
+            matches = array.values == text
+        if not matches.any():
+            present = listing([str(value) for value in np.unique(array.values)])
+            raise ValueError(f"{name} = {text!r}: no run has it: choose from {present}")
+        runs = runs.isel({array.dims[0]: matches.nonzero()[0]})
+    return runs.squeeze([dim for dim in design_dims(runs) if runs.sizes[dim] == 1])

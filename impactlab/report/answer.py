@@ -17,9 +17,8 @@ from impactlab.figures.needs import ORDERED, Needs, needed
 from impactlab.methods.record import Family
 from impactlab.model.parameters import PARAMETERS
 from impactlab.report import effects, measured, ranking
-from impactlab.report.distribution import limit_entries
+from impactlab.report.distribution import limit_entries, regime_entries
 from impactlab.report.page import Entry
-from impactlab.report.regimes import regime_entries
 from impactlab.report.sensitivity import history_entries, shared, uncertainty
 from impactlab.variables import of_function
 from impactlab.verdicts import TOLERANCE

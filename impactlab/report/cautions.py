@@ -12,7 +12,7 @@ import xarray as xr
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, responses, usable
 from impactlab.methods.distributions import CHOICE
-from impactlab.report.regimes import regime_doubt
+from impactlab.report.distribution import regime_doubt
 from impactlab.solver.contact import CONTACT_LAWS, LAWS
 from impactlab.variables import MARKS, OUTSIDE_DATA, WARNINGS, of_function
 

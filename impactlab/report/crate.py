@@ -16,7 +16,7 @@ import xarray as xr
 from impactlab.figures.animation import FILE
 from impactlab.figures.record import CAPTIONS, listed
 from impactlab.files import replaced
-from impactlab.report.citation import author_name, read_citation
+from impactlab.report.page import author_name, read_citation
 
 METADATA = "ro-crate-metadata.json"
 _STUDY = "solved_study.yaml"

@@ -13,8 +13,8 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.surrogate import packed
+from impactlab.analysis.surrogate.chaos import orthonormal
 from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
-from impactlab.analysis.surrogate.polynomials import orthonormal
 from impactlab.analysis.surrogate.stored import IMPRECISE
 from impactlab.figures import labels
 from impactlab.methods.distributions import distribution_of

@@ -1,4 +1,4 @@
-"""Pages from templates: the records that templates print, and where the numbers come from."""
+"""Pages from templates: the records that they print, where the numbers come from, how to cite."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
+from ruamel.yaml import YAML
 
 from impactlab.figures import labels
 from impactlab.figures.animation import FILE
@@ -26,7 +27,6 @@ from impactlab.figures.needs import REFINED
 from impactlab.figures.record import listed
 from impactlab.files import identity, replaced
 from impactlab.methods import FAMILIES
-from impactlab.report.citation import how_to_cite, made_from
 
 _PROVENANCE = {
     "created": "Solved",
@@ -252,3 +252,40 @@ def drawn_data(path: Path) -> Table:
         rows.append([*(row[key] or "–" for key in columns), *numbers])
     part = "" if len(shown) == len(points) else f" ({len(shown)} of {len(points)} points)"
     return Table(f"Data as drawn{part}", head, rows)
+
+
+_PACKAGE = Path(__file__).parents[1]
+
+
+@cache
+def read_citation() -> dict[str, Any]:
+    """Return what CITATION.cff says."""
+    file = _PACKAGE / "CITATION.cff"  # in a checkout it is beside the package
+    entries: dict[str, Any] = YAML(typ="safe").load(
+        file if file.exists() else _PACKAGE.with_name(file.name)
+    )
+    return entries
+
+
+def author_name(author: dict[str, str]) -> str:
+    """Return the name of a person, or of an organisation."""
+    person = f"{author.get('given-names', '')} {author.get('family-names', '')}".strip()
+    return person or author["name"]
+
+
+def how_to_cite() -> str:
+    """Return the request of CITATION.cff, and the entry that it asks for."""
+    citation = read_citation()
+    authors = ", ".join(map(author_name, citation["authors"]))
+    title = f"{citation['title']}, version {citation['version']}"
+    return f"{' '.join(citation['message'].split())} {authors}: {title}."
+
+
+def made_from(stored: xr.Dataset) -> str:
+    """Return which file and which version of the software made the results in a dataset."""
+    attrs = {key: str(value) for key, value in stored.attrs.items()}
+    file = attrs.get("study_file", "").replace("../", "") or f"the study {attrs.get('study', '?')}"
+    digest = f" (SHA-256 {attrs['study_sha256'][:12]}…)" if "study_sha256" in attrs else ""
+    version = attrs.get("versions", "impactlab").split(",")[0]
+    revision = f", revision {attrs['source_revision']}" if "source_revision" in attrs else ""
+    return f"Made from {file}{digest} by {version}{revision}."

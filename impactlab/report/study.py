@@ -22,9 +22,9 @@ from impactlab.report import distribution, measured, sensitivity
 from impactlab.report.answer import entries
 from impactlab.report.cautions import beside, cautions, endings, notes
 from impactlab.report.convergence import convergence
+from impactlab.report.distribution import regime_entries
 from impactlab.report.explorer import write_explorer
 from impactlab.report.page import Cell, Row, Section, Table, described, motion, pictures, write_page
-from impactlab.report.regimes import regime_entries
 
 _GRID_VALUES = 12  # a longer list of values of a grid is replaced by its range
 _FAILED_RUNS = 20  # largest number of failed runs listed one by one

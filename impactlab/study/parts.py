@@ -1,7 +1,7 @@
 """Parts: ranges of a study's runs, each solved by a process that needs no other one, then merged.
 
 A process draws its range block by block, and writes each block, parameters included, to a file (see
-part_files). Parts that are started again solve what is missing.
+shard). Parts that are started again solve what is missing.
 """
 
 from __future__ import annotations
@@ -28,10 +28,9 @@ from impactlab.study import PARTS
 from impactlab.study.design import design
 from impactlab.study.inventory import checked_cases
 from impactlab.study.ownership import check_unclaimed, study_file, write_runs
-from impactlab.study.part_files import Block, PartFiles, Piece, pieces_of
 from impactlab.study.progress import items_done
 from impactlab.study.schema.declarations import AnyStudy
-from impactlab.study.shard import LAYOUT, Array, Columns
+from impactlab.study.shard import LAYOUT, Array, Block, Columns, PartFiles, Piece, pieces_of
 from impactlab.study.solvers import Solver, run_shape, solver_named
 from impactlab.study.steps import Tell, priced, resolved
 from impactlab.study.store import OutputSpec, joined, run_keys

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 from functions import ishigami, names
 
-from impactlab.analysis.sensitivity.imputation import imputed
+from impactlab.analysis.sensitivity.indices import imputed
 from impactlab.methods import sobol
 from impactlab.methods.runs import Sample
 from impactlab.methods.saltelli import REPLICATES, saltelli

@@ -21,7 +21,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from impactlab.analysis.sensitivity.imputation import MOST_IMPUTED
+from impactlab.analysis.sensitivity.indices import MOST_IMPUTED
 from impactlab.methods.estimators import half_width, leave_one_out
 from impactlab.methods.runs import Sample
 from impactlab.methods.saltelli import ratios, statistics, step

@@ -9,10 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.surrogate.chaos import basis
-from impactlab.analysis.surrogate.from_runs import SurrogateVerdict
-from impactlab.analysis.surrogate.polynomials import orthonormal
-from impactlab.analysis.surrogate.validation import half_width
+from impactlab.analysis.surrogate.chaos import basis, orthonormal
+from impactlab.analysis.surrogate.from_runs import SurrogateVerdict, half_width
 from impactlab.files import read_netcdf
 from impactlab.methods.distributions import distribution_of
 from impactlab.model.checks import did_you_mean

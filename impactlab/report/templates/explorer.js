@@ -3,7 +3,7 @@ const element = (id) => document.getElementById(id);
 
 const highest = Math.max(0, ...responses.flatMap((one) => one.terms.flatMap((term) => term[1].map((f) => f[1]))));
 
-// Orthonormal polynomials, as `Polynomials` of impactlab/analysis/surrogate/polynomials.py.
+// Orthonormal polynomials, as `Polynomials` of impactlab/analysis/surrogate/chaos.py.
 function polynomial(parameter, value) {
   const { centre, scale, diagonal, beside } = parameter.polynomials;
   const z = ((parameter.logarithmic ? Math.log(value * parameter.si) : value * parameter.si) - centre) / scale;

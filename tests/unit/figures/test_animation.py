@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 import impactlab as il
-from impactlab.cli.animate import _selected
+from impactlab.cli.results import _selected
 from impactlab.figures import animation as animations
 from impactlab.figures.animation import with_fields
 from impactlab.variables import FIELDS, RESPONSES

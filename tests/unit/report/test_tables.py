@@ -12,7 +12,7 @@ import xarray as xr
 from samples import indices, sample
 
 import impactlab as il
-from impactlab.report import latex, tables
+from impactlab.report import tables
 from impactlab.report.tables import export, table
 from impactlab.verification.finding import Comparison, Finding, Outcome
 from impactlab.verification.outcomes import packed
@@ -185,7 +185,7 @@ def test_latex_has_heads_with_units_and_numbers_that_fit_their_columns(tmp_path)
 )
 def test_numbers_have_the_digits_and_units_of_print(values, units, cells, shape):
     column = xr.DataArray(values, attrs={"units": units, "label": "Some value"}, name="some")
-    assert latex._column(column)[::2] == (cells, f"S[table-format={shape}]")
+    assert tables._column(column)[::2] == (cells, f"S[table-format={shape}]")
 
 
 @pytest.mark.skipif(shutil.which("pdflatex") is None, reason="needs the command pdflatex")

@@ -9,7 +9,7 @@ from command_line import called, done
 
 from impactlab.files import read_netcdf
 from impactlab.study import parts
-from impactlab.study.part_files import Block, Piece, pieces_of
+from impactlab.study.shard import Block, Piece, pieces_of
 
 RANGES = "{distribution: uniform, low: -3.14, high: 3.14}"
 FUNCTION = f"""

@@ -9,7 +9,7 @@ import xarray as xr
 from SALib.sample import sobol as sampler
 
 import impactlab as il
-from impactlab.analysis.surrogate.polynomials import orthonormal
+from impactlab.analysis.surrogate.chaos import orthonormal
 from impactlab.methods.distributions import distribution_of
 from impactlab.variables import described
 

@@ -9,8 +9,7 @@ from numpy.polynomial.hermite_e import hermevander
 from numpy.polynomial.legendre import legvander
 from scipy.special import factorial
 
-from impactlab.analysis.surrogate.chaos import fit, indices, influence
-from impactlab.analysis.surrogate.polynomials import orthonormal
+from impactlab.analysis.surrogate.chaos import fit, indices, influence, orthonormal
 from impactlab.methods.distributions import distribution_of
 
 YIELD = {

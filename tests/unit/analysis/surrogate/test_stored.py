@@ -7,8 +7,7 @@ import pytest
 import xarray as xr
 
 from impactlab.analysis.surrogate import analysis, load_surrogate, packed
-from impactlab.analysis.surrogate.chaos import Chaos
-from impactlab.analysis.surrogate.polynomials import orthonormal
+from impactlab.analysis.surrogate.chaos import Chaos, orthonormal
 from impactlab.files import write_netcdf
 from impactlab.methods.distributions import distribution_of
 from impactlab.report.console import print_predictions

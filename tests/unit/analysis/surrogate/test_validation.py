@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from impactlab.analysis.surrogate.chaos import fit
-from impactlab.analysis.surrogate.polynomials import orthonormal
-from impactlab.analysis.surrogate.validation import error_model, half_width, leverage, predictivity
+from impactlab.analysis.surrogate.chaos import fit, orthonormal
+from impactlab.analysis.surrogate.from_runs import error_model, half_width, leverage, predictivity
 from impactlab.methods.distributions import distribution_of
 
 NORMAL = {
