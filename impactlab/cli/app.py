@@ -12,7 +12,7 @@ import typer
 from typer.core import TyperGroup
 
 from impactlab import wings
-from impactlab.cli.interrupt import stop_quietly
+from impactlab.cli import stop_quietly
 
 _COMMANDS = {
     "simulate": "impactlab.cli.simulate:simulate",

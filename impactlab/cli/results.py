@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from impactlab.cli.interrupt import stop_solving
+from impactlab.cli import stop_solving
 from impactlab.cli.options import (
     RESULTS,
     RunsFile,

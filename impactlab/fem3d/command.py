@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from impactlab.cli.interrupt import stop_kept
+from impactlab.cli import stop_kept
 from impactlab.cli.options import given, new_file, new_folder
 
 if TYPE_CHECKING:

@@ -117,9 +117,8 @@ class Divided:
         return predictions
 
 
-GOOD = (
-    0.9  # lower end of the predictivity on runs left out from which on a surrogate needs no warning
-)
+GOOD = 0.9
+"""Lower end of the predictivity on runs left out from which on a surrogate needs no warning."""
 FEW = 20  # distinct values up to which a response jumps between levels, where each comes ten times
 
 
