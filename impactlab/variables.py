@@ -216,7 +216,7 @@ FIELDS = _table(
 """The same at times in between, by name."""
 _SERIES = (
     ("m", "indentation left after all strikes so far"),
-    ("m", "deflection under the sphere of the beam at rest after the strike"),
+    ("m", "deflection under the sphere of the beam at rest after the strike, or at the next one"),
     ("N", "largest contact force of the strike"),
     ("1", "coefficient of restitution of the strike"),
     ("m s-1", "sphere's velocity away from the beam when the strike's last contact ends"),

@@ -25,6 +25,7 @@ from impactlab.model.parameters import (
     flatten,
     with_values,
 )
+from impactlab.model.quantities import engineering
 from impactlab.model.section import least_points
 from impactlab.model.shapes import profile_points
 from impactlab.solver import (
@@ -52,6 +53,8 @@ MODAL_DAMPING = (
     "is of modes: set scheme: modal, or state mass_damping and stiffness_damping instead"
 )
 """End of the message that refuses it in leapfrog."""
+TOO_SOON = "must be at least the duration, which is simulated after every strike: change either"
+"""Why strikes cannot follow each other so soon."""
 _LONGEST = 20.0
 """Largest length of a beam at rest on a foundation, over its (4 EI/k)^(1/4)."""
 _ON_NODE = 1e-6
@@ -101,9 +104,11 @@ def case_table(
             raise ValueError(
                 f"{run}{name} = {word!r}: beam_model = {model!r} has {only!r} alone{reason}"
             )
+    repeated, interval = cases["strikes"] > 1, cases["strike_interval"]
     for name, refused, reason in (
-        ("strikes", (cases["strikes"] > 1) & flies(cases), NO_REST),
-        ("strikes", (cases["strikes"] > 1) & _is_long_on_foundation(cases), STIFF_FOUNDATION),
+        ("strikes", repeated & flies(cases), NO_REST),
+        ("strikes", repeated & _is_long_on_foundation(cases), STIFF_FOUNDATION),
+        ("strike_interval", repeated & (interval > 0.0) & (interval < duration), TOO_SOON),
         (
             "damping_ratio",
             (cases["damping_ratio"] > 0.0) & (cases["scheme"] != SCHEMES.index("modal")),
@@ -113,7 +118,8 @@ def case_table(
         if refused.any():
             row = int(refused.argmax())
             run = f"run {first_run + row}: " if varied else ""
-            raise ValueError(f"{run}{name} = {cases[name][row]:g}: {reason}")
+            stated = engineering(float(cases[name][row]), PARAMETERS[name].units)
+            raise ValueError(f"{run}{name} = {stated}: {reason}")
     between = cases["strike_position"] * (cases["nodes"] - 1)
     refused = abs(between - between.round()) > _ON_NODE
     if refused.any():
@@ -187,7 +193,7 @@ def _table(
     discretisation = discretisation.resolved(np.unique(impact.beam_model).tolist())
     values: dict[str, Any] = {**flatten(impact, discretisation), "duration": duration}
     values["sphere_mass"] = impact.sphere.total_mass
-    values = dict.fromkeys(SECTION, 0.0) | values
+    values = dict.fromkeys((*SECTION, "strike_interval"), 0.0) | values
     for name, entry in PARAMETERS.items():
         if entry.choices:
             numbered = enumerate(entry.choices)

@@ -101,10 +101,14 @@ class Impact:
         what other ends need.
     strikes : int, default 1
         Number of times that a sphere with this velocity strikes this place, the beam at rest again
-        before each (solver/settle.py): plastic strains and dent are carried over. Responses are
+        before each (solver/settle.py) unless `strike_interval` is stated: plastic strains and dent are carried over. Responses are
         those of the last strike, but that dents, plastic strains and dissipated energies are what
         all of them have left, and deflections count from the axis before the first. More than one
         need ends that hold the beam, and none is for "solid".
+    strike_interval : Quantity, optional
+        Time from one strike to the next, in s, between which the beam goes on moving; at least the
+        duration, after which the sphere of the strike before is taken away. By default the beam
+        comes to rest in between.
 
     Raises
     ------
@@ -133,6 +137,7 @@ class Impact:
     contact_prestress: str = "ignored"
     strike_position: SI[float] = SI("1", MID_SPAN)
     strikes: int = 1
+    strike_interval: SI[float | None] = SI("s", None)
 
     def __post_init__(self) -> None:
         instance("Impact", "sphere", self.sphere, Sphere)
@@ -141,6 +146,8 @@ class Impact:
         object.__setattr__(self, "strikes", strikes)
         alone = np.equal(strikes, 1) | among(self.beam_model, SETTLING_MODELS)
         require(alone, "Impact", "strikes", strikes, f"must be 1 with {OTHER_MODEL}")
+        if self.strike_interval is not None:
+            positive("Impact", "strike_interval", self.strike_interval)
         positive("Impact", "velocity", self.velocity)
         gravity = number("Impact", "gravity", self.gravity)
         require(gravity >= 0, "Impact", "gravity", gravity, "must not be negative")

@@ -75,6 +75,7 @@ _ROWS = (
     ),
     ("strike_position", "1", "place of the strike over the span", "impact.strike_position"),
     ("strikes", "1", "number of strikes on that place", "impact.strikes"),
+    ("strike_interval", "s", "time between strikes", "impact.strike_interval"),
     ("support_left", "1", "left support of the beam", "impact.beam.support_left"),
     ("support_right", "1", "right support of the beam", "impact.beam.support_right"),
     *(

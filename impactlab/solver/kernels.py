@@ -86,27 +86,37 @@ def _keep_profiles(
 
 
 def _rest(model: BeamModel) -> Callable[..., int]:
-    """Return a function that puts the beam to rest after a strike."""
+    """Return a function that puts the beam to rest after a strike, unless it goes on moving."""
     settle, lift = model.settle, model.lift
 
     @compiled
     def rest(
-        case: Record, contact: Record, events: Record, series: Array, state: State, strike: int
+        case: Record,
+        contact: Record,
+        events: Record,
+        series: Array,
+        state: State,
+        strike: int,
+        now: int,
     ) -> int:
-        """Fill in the row of outputs.SERIES, if any; return which row of beam.w is the last."""
-        if settle is not None:
+        """Fill in the row of outputs.SERIES, if any; return which row of beam.w is the next.
+
+        now: the last row of the strike.
+        """
+        row, last = 1 - now, strike == case.strikes - 1
+        if settle is not None and (last or case.strike_interval == 0.0):
             settle(state)
-        events.v_mid = 0.0
+            events.v_mid, row = 0.0, int(np.int64(0))
         pair, section, grid, beam, plastic = state[:5]
-        dent, w = contact.delta_r, beam.w[0, grid.mid] - kink.height(grid, contact.kink)
+        dent, w = contact.delta_r, beam.w[row, grid.mid] - kink.height(grid, contact.kink)
         if lift is not None:
             dent += lift(state, contact, 0.0)
         if strike < series.shape[0]:
             _, yielded = plastic_energy(plastic, section, grid)
             responses.read_strike(series[strike], dent, w, yielded, case, events, contact, pair)
-        if strike == case.strikes - 1:
+        if last:
             kink.straighten(beam.w, grid, contact.kink)
-        return int(np.int64(0))
+        return row
 
     return rest
 
@@ -133,14 +143,17 @@ def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
             if strike > 0 and not responses.sphere_leaves(events):
                 answer.status = EARLIER_STRIKE_UNFINISHED
                 return now
-            now = march(case, state, contact, events, samples, steps, strike)
+            interval = 0
+            if case.strike_interval > 0.0 and strike < case.strikes - 1:
+                interval = max(round(case.strike_interval / state.grid.dt), steps + 1)
+            now = march(case, state, contact, events, samples, steps, strike, interval, now)
             if largest_deflection is not None:
                 events.w_max = largest_deflection(state, events.w_max)
             if now < 0:
                 answer.status = DIVERGED
                 return now
             if case.strikes > 1:
-                now = rest(case, contact, events, series, state, strike)
+                now = rest(case, contact, events, series, state, strike, now)
         answer.energy_error = events.energy_error
         if answer.energy_error > WORST_ENERGY_ERROR:
             answer.status = ENERGY_OUT_OF_BALANCE

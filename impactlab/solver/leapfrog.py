@@ -17,12 +17,15 @@ from impactlab.solver.contact import prestress, rate
 from impactlab.solver.contact_patch import contact_radius
 from impactlab.solver.fibre_plasticity import catch_up
 from impactlab.solver.jit import compiled, inlined
+from impactlab.solver.responses import sphere_leaves
 from impactlab.solver.state import BeamModel, Flight, State
 from impactlab.solver.types import CONTACT_PATCH, Array, Record
 
 _AUDITS = 500
 _LEAST_STRIDE, _LARGEST_STRIDE = 16, 64
 """Energy is audited 500 times per run, but at most every 16 steps and at least every 64."""
+_AWAY = 1e15
+"""Distance (m) of a sphere that has left, while the beam goes on."""
 
 Point = tuple[float, float, float, float, float]
 """Force, mid-span deflection and curvature, sphere displacement and indentation at a step."""
@@ -55,7 +58,7 @@ prestressed_force = event_tracker.between_steps(prestress.force, prestress.force
 
 def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
     """Return a function that leaps over steps without contact, if it can, and samples them."""
-    leap, retrace, _ = flight
+    leap, retrace, _, _ = flight
 
     @inlined
     def fly(
@@ -67,17 +70,19 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
         sphere: tuple[float, float, float, float],
         step: int,
         steps: int,
+        end: int,
         point: Point,
     ) -> tuple[int, Point]:
         """Return (number of steps, last point sampled).
 
-        sphere: its displacement, its last step, how much each grows by, and indentation (m).
+        sphere: its displacement, its last step, how much each grows by, and indentation (m). steps:
+        number of steps that are sampled; end: the last step.
         """
         w_s, last, fall, delta = sphere
         w_mid = state.beam.w[now, state.grid.mid]
         gap = contact.delta_r - delta
-        leapt = leap(state, now, gap, (last, fall), events.w_max, steps - step)
-        for j in range(1, leapt if samples.shape[1] > 0 else 0):
+        leapt = leap(state, now, gap, (last, fall), events.w_max, end - step)
+        for j in range(1, leapt if samples.shape[1] > 0 and step < steps else 0):
             w, kappa = retrace(state)
             moved = j * (last + 0.5 * (j + 1) * fall)
             before, point = point, (0.0, w, kappa, w_s + moved, delta + moved - (w - w_mid))
@@ -88,20 +93,27 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
 
 
 def _at_touch(model: BeamModel) -> Callable[..., tuple[float, float]]:
-    """Return a function for where a sphere touches a beam at rest."""
+    """Return a function for where a sphere touches a beam that was struck before."""
     beam_energy, mid_curvature, sag = model.energy, model.curvature, model.sag
     fast = model.flight is not None
 
     @compiled
-    def at_touch(case: Record, state: State, contact: Record) -> tuple[float, float]:
-        """Return the sphere's displacement (m), and the whole energy (J) but for its velocity's."""
+    def at_touch(
+        case: Record, state: State, contact: Record, events: Record, now: int
+    ) -> tuple[float, float]:
+        """Return the sphere's displacement (m), and the whole energy (J) but for its velocity's.
+
+        A beam that moves has its energy from the balance of the strikes before.
+        """
         pair, section, grid, beam, plastic = state[:5]
-        w_s = beam.w[0, grid.mid] - kink.height(grid, contact.kink) + contact.delta_r
+        w_s = beam.w[now, grid.mid] - kink.height(grid, contact.kink) + contact.delta_r
         if pair.bending != 0.0:
-            elastic = plastic.M_0[grid.mid] / section.stiffness - mid_curvature(state, 0)
+            elastic = plastic.M_0[grid.mid] / section.stiffness - mid_curvature(state, now)
             w_s += pair.bending * elastic
         if sag is not None:
             w_s += sag(state)
+        if case.strike_interval > 0.0:
+            return w_s, events.ledger - case.sphere_mass * case.gravity * w_s
         stored, lost = contact_history.energies(contact, pair, contact.delta_r, fast)
         in_beam = beam_energy(state, 0, 0.0, 0.0)
         return w_s, in_beam + stored + lost - case.sphere_mass * case.gravity * w_s
@@ -201,7 +213,7 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
     move_beam, mid_curvature, spread = model.step, model.curvature, model.spread
     flight_stride, fly = model.flight_stride, None if model.flight is None else _leaps(model.flight)
     touch, imbalance = _contact(model, extended), _audit(model)
-    at_touch = _at_touch(model)
+    at_touch, land = _at_touch(model), None if model.flight is None else model.flight.land
 
     @inlined
     def march(
@@ -212,10 +224,14 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
         samples: Array,
         steps: int,
         strike: int,
+        interval: int,
+        now: int,
     ) -> int:
         """March from first touch to the end; return which row of beam.w is the last, or -1.
 
         -1: it diverged. contact and events are kept up to date. strike: how many came before.
+        interval: number of steps until the next on the moving beam, with the sphere taken away once
+        `steps` are over, if it leaves; 0: none follows. now: the first row.
         """
         pair, section, grid, beam, plastic = state[:5]
         w, u, dt, mid = beam.w, beam.u, grid.dt, grid.mid
@@ -224,15 +240,20 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
         w_s, v_s, per_mass = 0.0, case.velocity - 0.5 * dt * case.gravity, 1.0 / case.sphere_mass
         rest = 0.0
         if strike > 0:
-            w_s, rest = at_touch(case, state, contact)
-            events.w = events.w_before = events.w_max = w[0, mid] - kink.height(grid, contact.kink)
+            w_s, rest = at_touch(case, state, contact, events, now)
+            w_mid = w[now, mid] - kink.height(grid, contact.kink)
+            events.w = events.w_before = events.w_max = w_mid
+            if land is not None and case.strike_interval > 0.0:
+                land(state, w[now, mid])
         # a plain 0 would be a type of its own, and its callees compiled twice
-        now = step = int(np.int64(0))
-        to_audit = stride
+        step = int(np.int64(0))
+        to_audit, end = stride, steps
         here = (0.0, 0.0, 0.0, 0.0, 0.0)
         ahead = 0.0  # the mean under the pressure, of mid-span
         event_tracker.start(events, contact, strike)
-        while step <= steps:
+        if strike > 0 and case.strike_interval > 0.0:
+            event_tracker.approach_moving(events)
+        while step <= end:
             t, u_mid = step * dt, u[mid]
             w_mid = w[now, mid] - kink.height(grid, contact.kink)
             F, approach, delta = touch(case, state, contact, events, now, w_s - w_mid - ahead, t)
@@ -244,7 +265,9 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
 
             if fly is not None and events.touching == 0.0 and F == 0.0 and pair.bending == 0.0:
                 sphere = (w_s, dt * v_s, dt * dt * case.gravity, delta)
-                leapt, here = fly(state, now, contact, events, samples, sphere, step, steps, here)
+                leapt, here = fly(
+                    state, now, contact, events, samples, sphere, step, steps, end, here
+                )
                 if leapt > 0:
                     w_s += leapt * (sphere[1] + 0.5 * (leapt + 1) * sphere[2])
                     v_s += leapt * dt * case.gravity
@@ -261,18 +284,25 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
                 ahead += change
 
             to_audit = min(to_audit - 1, stride) if F > 0.0 else to_audit - 1
-            if to_audit == 0 or step == steps:
+            if to_audit == 0 or step == end:
                 to_audit = max(stride, flight_stride)
                 catch_up(plastic, section)
-                events.v_s, events.v_mid = v_s, u_mid / dt
+                if step <= steps:
+                    events.v_s, events.v_mid = v_s, u_mid / dt
                 sphere = (w_s, v_s, v_after, approach)
                 error = imbalance(case, state, contact, now, sphere, F, u_mid, excess, rest)
                 events.energy_error = max(events.energy_error, error)
                 if not error < 1.0:
                     return -1
+                if step == end:
+                    taken = 0.5 * case.sphere_mass * (case.velocity**2 - v_s * v_after)
+                    events.ledger = rest + taken + case.sphere_mass * case.gravity * w_s
+                if step == steps and interval > 0 and sphere_leaves(events):
+                    ahead, end, events.w_max = _AWAY, max(interval - 1, steps), _AWAY
             w_s, v_s, now = w_s + dt * v_after, v_after, 1 - now
             step += 1
-        kink.straighten(w, grid, contact.kink)
+        if interval == 0 or not sphere_leaves(events):
+            kink.straighten(w, grid, contact.kink)
         return 1 - now
 
     return march

@@ -358,7 +358,12 @@ def _largest(state: State, w_max: float) -> float:
     return largest_deflection(state.extra.leaps, state.extra.D, w_max)
 
 
-FLIGHT = Flight(_leap, _retrace, _largest)
+@compiled
+def _land(state: State, w: float) -> None:
+    land(state.extra.leaps, w)
+
+
+FLIGHT = Flight(_leap, _retrace, _largest, _land)
 MODEL = BeamModel(
     _make,
     _step,

@@ -44,7 +44,7 @@ _PLAIN_STEP, _PLAIN_ENERGY = modal.MODEL.step, modal.MODEL.energy
 _PLAIN_CURVATURE, _PLAIN_DEFLECT = modal.MODEL.curvature, modal.MODEL.deflect
 _PLAIN_SPREAD = modal.MODEL.spread
 _PLAIN_SETTLE: Any = modal.MODEL.settle
-_PLAIN_LEAP, _PLAIN_RETRACE, _PLAIN_LARGEST = modal.FLIGHT
+_PLAIN_LEAP, _PLAIN_RETRACE, _PLAIN_LARGEST, _PLAIN_LAND = modal.FLIGHT
 _LEFT_OUT = 3.0 / 7.0
 """Of the foundation, of the modes left out: their sum of k^-8 over that of k^-4 and the first."""
 
@@ -235,6 +235,11 @@ def _largest(state: State, w_max: float) -> float:
 
 
 @compiled
+def _land(state: State, w: float) -> None:
+    _PLAIN_LAND(_plain(state), w)
+
+
+@compiled
 def _settle(state: State) -> None:
     extra = state.extra
     for p in range(extra.before.size):
@@ -251,7 +256,7 @@ MODEL = BeamModel(
     _spread,
     _settle,
     flight_stride=modal.MODEL.flight_stride,
-    flight=Flight(_leap, _retrace, _largest),
+    flight=Flight(_leap, _retrace, _largest, _land),
     renew=renew,
     take=take,
 )

@@ -98,7 +98,7 @@ def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) ->
         bends = pair.bending != 0.0
         answer.maximum_indentation = contact.largest if bends else approach
     answer.number_of_contacts = events.contacts
-    answer.contact_duration = events.t_first_end
+    answer.contact_duration = events.t_first_end - events.t_begin
     if np.isnan(events.t_first_end):
         answer.status |= FIRST_CONTACT_UNFINISHED
     if events.touching == 1.0:
@@ -107,7 +107,8 @@ def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) ->
         answer.total_contact_time = events.time_in_contact
         answer.permanent_indentation = contact.delta_r
         answer.impulse = events.impulse
-        answer.mean_force = events.impulse / events.time_in_contact
+        if events.time_in_contact > 0.0:
+            answer.mean_force = events.impulse / events.time_in_contact
         _, answer.contact_dissipation = energies(contact, pair, events.delta)
         if answer.contact_dissipation < -_ROUNDING * contact.work:
             answer.remarks |= CONTACT_CREATED_ENERGY

@@ -31,12 +31,14 @@ class Flight(NamedTuple):
     leap(state, now, gap, sphere, w_max, room): make many steps at once; return how many, 0 where an
     event may be near. beam.w and beam.u at mid-span follow. retrace(state): make the steps of the
     last leap one by one, aside; return deflection (m) and curvature (1/m) of mid-span after the
-    next. largest(state, w_max): the largest deflection, of the leaps, too (m).
+    next. largest(state, w_max): the largest deflection, of the leaps, too (m). land(state, w): forget
+    all leaps so far; mid-span is at w (m).
     """
 
     leap: Callable[..., int]
     retrace: Callable[..., tuple[float, float]]
     largest: Callable[..., float]
+    land: Callable[..., None]
 
 
 class BeamModel(NamedTuple):

@@ -56,7 +56,7 @@ CASE = record(
     beam_density beam_youngs_modulus beam_poissons_ratio beam_yield_stress
     beam_isotropic_hardening_modulus beam_kinematic_hardening_modulus
     beam_rate_coefficient beam_rate_exponent beam_rate_sensitivity beam_reference_rate courant
-    strike_position
+    strike_position strike_interval
     stiffness_left stiffness_right rotational_stiffness_left rotational_stiffness_right
     mass_damping stiffness_damping damping_ratio foundation_stiffness
     compliance bending_compliance stress_along stress_across
@@ -77,7 +77,8 @@ The fields are the parameters of model/parameters.py, in SI, with contact law, b
 supports, shape, rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS,
 SUPPORTS, SHAPES, RULES and SCHEMES), the sphere's mass and the shear coefficient resolved,
 thicknesses that the shape does not have as 0, the points of a profile, (PROFILE, 2), and the rows
-of layers, (LAYERS, 4), 0 after the last; the duration in s; whether supports hold the axis; and
+of layers, (LAYERS, 4), 0 after the last; the time between strikes, 0 where the beam rests in
+between; the duration in s; whether supports hold the axis; and
 what follows from them: of the section (model/section.py) rho A, rho I, k G A, the stress in the
 outermost fibre over the bending moment, the plastic modulus and the thickness of the outer layer,
 and of contact and strip those of model/contact_compliance.py.
