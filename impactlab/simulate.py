@@ -71,7 +71,8 @@ def simulate(
         give is NaN, and `status` says why; `remarks` qualifies the others. With several strikes,
         each of which takes the duration, histories are those of the last one, `deflection` is that
         at rest, what each strike left is on `strike` (NaN from the one that failed on), and
-        `shakedown_strike` says from which on nothing grows.
+        `shakedown_strike` says from which on nothing grows. With several spheres, scalars are those
+        of the first, and those of all are on `sphere`, with a status of their own.
 
     Raises
     ------
@@ -134,6 +135,8 @@ def run_dataset(
     axes = {"time": np.linspace(0.0, duration, samples)}
     if several:
         axes["strike"] = np.arange(1.0, several + 1.0)
+    if cases["further"][0]:
+        axes["sphere"] = np.arange(1.0, cases["further"][0] + 2.0)
     if frames:
         axes["field_time"], fields = _fields_over_time(cases, frames)
         answers |= fields

@@ -13,6 +13,7 @@ from impactlab.jit import precompile
 from impactlab.model.beam_modes import mode_keys, mode_table
 from impactlab.model.cost import contact_time, flies, swing
 from impactlab.model.discretisation import Discretisation
+from impactlab.model.further_spheres import VISCOUS
 from impactlab.model.impact import Impact
 from impactlab.model.quantities import engineering
 from impactlab.model.section import fibre_table
@@ -21,10 +22,11 @@ from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.jit import FOLDER
 from impactlab.solver.kernels import is_extended, kernel_of
-from impactlab.solver.outputs import SERIES, blank
+from impactlab.solver.outputs import DIVERGED, SERIES, blank
 from impactlab.solver.section import FibreSection, make_section
+from impactlab.solver.several_spheres import Table, make_table
 from impactlab.solver.types import VON_KARMAN
-from impactlab.variables import BY_STRIKE, FAILURES, HISTORIES, RESPONSES
+from impactlab.variables import BY_SPHERE, BY_STRIKE, FAILURES, HISTORIES, RESPONSES
 
 _SWINGS = {
     outputs.INDENTATION_STILL_GROWING: 0.0,
@@ -70,12 +72,14 @@ def too_short(cases: Any, status: Any) -> str:
 
 
 _COMPILE = """
+from dataclasses import replace
 import impactlab as il
 from impactlab.model.case_table import case_table
 from impactlab.solve import solve
 grid = il.Discretisation(nodes=5, scheme={scheme!r})
+impact = replace(il.paper_impact(), further_spheres={spheres!r})
 varied = {{"beam_model": [{model!r}], "contact": [{law!r}]}}
-solve(case_table(il.paper_impact(), grid, duration=1e-6, varied=varied))
+solve(case_table(impact, grid, duration=1e-6, varied=varied))
 """
 
 
@@ -84,11 +88,13 @@ def solve(
 ) -> dict[str, np.ndarray[Any, Any]]:
     """Run the kernels over a case table, on the calling thread and without the GIL.
 
-    samples: length of each history (0: none). profiles: keep the fields along the beam, for
-    which all cases must share nodes and points; raises ValueError where they do not. strikes: the
-    number that all cases have, to keep what solver.outputs.SERIES has of each. Returns by name, of
-    R runs: the fields of solver.outputs.RESPONSE, (R,); histories, (R, samples); profiles,
-    (R, nodes, points), or (R, nodes) for the deflection; series, (R, strikes).
+    samples: length of each history (0: none). profiles: keep the fields along the beam, for which
+    all cases must share nodes and points; raises ValueError where they do not, or where further
+    spheres meet what their kernel lacks. strikes: the number that all cases have, to keep what
+    solver.outputs.SERIES has of each. Returns by name, of R runs: the fields of
+    solver.outputs.RESPONSE, (R,); histories, (R, samples); profiles, (R, nodes, points), or (R,
+    nodes) for the deflection; series, (R, strikes); of several spheres, variables.BY_SPHERE, (R,
+    spheres) or (R, spheres, samples).
     """
     if profiles and any(np.unique(cases[name]).size > 1 for name in ("nodes", "points", "rule")):
         raise ValueError("profiles need the same nodes, points and rule in every run")
@@ -103,17 +109,23 @@ def solve(
     contacts, events = np.zeros(runs, CONTACT), np.zeros(runs, EVENTS)
     arrays = (responses, contacts, events, histories, series, deflection)
     models, schemes = cases["beam_model"], cases["scheme"]
+    further = [make_table(cases, samples)] if cases["further"].any() else []
     kinds = np.stack([models, schemes, is_extended(cases), mode_keys(cases)])
+    if further and kinds[2].any():
+        raise ValueError(f"further_spheres: {VISCOUS}")
     starts = np.flatnonzero(np.diff(kinds, prepend=-1).any(axis=0))
     for start, end in itertools.pairwise((*starts, runs)):
         model, scheme, extended, _ = kinds[:, start]
         stretches = model == VON_KARMAN
         fibres = np.full((2, end - start, nodes, points if stretches else points // 2), np.nan)
-        compile_kernels([BEAM_MODELS[model]], [SCHEMES[scheme]], [bool(extended)])
-        kernel_of(model, scheme, bool(extended))(
+        kind = [BEAM_MODELS[model]], [SCHEMES[scheme]], [bool(extended)], [bool(further)]
+        compile_kernels(*kind)
+        kernel_of(model, scheme, bool(extended), bool(further))(
             cases[start:end],
             table[start:end],
-            mode_table(cases[start]),
+            Table(*(rows[start:end] for rows in further[0]))
+            if further
+            else mode_table(cases[start]),
             *(array[start:end] for array in arrays),
             *fibres,
         )
@@ -125,28 +137,50 @@ def solve(
         columns |= zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)
     if strikes:
         columns |= zip(BY_STRIKE, np.moveaxis(series, 2, 0), strict=True)
+    if further:
+        columns |= _by_sphere(columns, further[0])
     if profiles:
         columns["plastic_strain"], columns["equivalent_plastic_strain"] = strains
         columns["deflection"] = deflection
     return columns
 
 
+def _by_sphere(columns: dict[str, Any], table: Table) -> dict[str, np.ndarray[Any, Any]]:
+    """Return the answers by sphere, of which the first one's are in the columns."""
+    fields = table.answers.dtype.names or ()
+    others = {name: table.answers[name] for name in fields}
+    others["contact_force"] = table.samples[:, :, 0]
+    lost = table.answers["status"] & DIVERGED != 0
+    others["contact_force"][lost] = np.nan
+    stems = {name: name.removesuffix("_of_spheres") for name in BY_SPHERE}
+    return {
+        name: np.concatenate([columns[stem][:, np.newaxis], others[stem]], axis=1)
+        for name, stem in stems.items()
+        if stem in columns
+    }
+
+
 def compile_kernels(
     beam_models: Iterable[str] = BEAM_MODELS,
     schemes: Iterable[str] = SCHEMES,
     extended: Iterable[bool] = (False, True),
+    several: Iterable[bool] = (False, True),
 ) -> Path | None:
     """Compile the kernels of these models and schemes, unless they are compiled.
 
-    extended: whether those with what kernels.is_extended names, those without, or both. Returns
-    the folder of the compiled kernels, None where they cannot be kept.
+    extended: whether those with what kernels.is_extended names, those without, or both; several:
+    the same of further spheres. Returns the folder of the compiled kernels, None where they cannot
+    be kept.
     """
     programs = {}
-    for model, scheme, more in itertools.product(beam_models, schemes, extended):
-        if model in BENDING_MODELS or (model in BEAM_MODELS and scheme == "leapfrog"):
-            kernel = kernel_of(BEAM_MODELS.index(model), SCHEMES.index(scheme), more)
-            law = "hunt_crossley" if more else "hertz"
-            programs[kernel] = _COMPILE.format(model=model, scheme=scheme, law=law)
+    for model, scheme, more, spheres in itertools.product(beam_models, schemes, extended, several):
+        kind: dict[str, Any] = {"model": model, "scheme": scheme}
+        kind["law"] = "hunt_crossley" if more else "hertz"
+        kind["spheres"] = "0.25 1 0" if spheres else None
+        alone = scheme == "leapfrog" and model in BEAM_MODELS and not spheres
+        if alone or (model in BENDING_MODELS and not (spheres and (more or scheme == "modal"))):
+            number = BEAM_MODELS.index(model), SCHEMES.index(scheme)
+            programs[kernel_of(*number, more, spheres)] = _COMPILE.format(**kind)
     precompile(programs)
     return FOLDER
 

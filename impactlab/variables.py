@@ -230,6 +230,17 @@ BY_STRIKE = _table(
     )
 )
 """Answers of every strike, of runs with several, by name."""
+_OF_EACH = "peak_force contact_duration number_of_contacts impulse permanent_indentation"
+BY_SPHERE = _table(
+    *(
+        Variable(f"{name}_of_spheres", ("sphere",), entry.units, f"{entry.long_name}, by sphere")
+        for name in (*_OF_EACH.split(), "rebound_velocity")
+        for entry in (RESPONSES[name],)
+    ),
+    Variable("contact_force_of_spheres", ("sphere", "time"), "N", "contact force, by sphere"),
+    Variable("status_of_spheres", ("sphere",), "1", "why responses are missing, by sphere"),
+)
+"""Answers of every sphere, of runs with several, by name."""
 SHAKEDOWN = 1e-3
 """Largest growth in a strike, over what strikes have left so far, that counts as none."""
 _SHAKEDOWN = _table(
@@ -244,6 +255,7 @@ _SHAKEDOWN = _table(
 )
 COORDINATES = _table(
     Variable("strike", ("strike",), "1", "number of the strike"),
+    Variable("sphere", ("sphere",), "1", "number of the sphere"),
     Variable("time", ("time",), "s", "time since first touch"),
     Variable("field_time", ("field_time",), "s", "time of the fields since first touch"),
     Variable("x", ("x",), "m", "distance from the left end"),
@@ -258,7 +270,7 @@ _OF_WINGS = _table(
         for name, units, long_name, comment in model.variables
     )
 )
-_AXES = HISTORIES | PROFILES | FIELDS | BY_STRIKE | COORDINATES
+_AXES = HISTORIES | PROFILES | FIELDS | BY_STRIKE | BY_SPHERE | COORDINATES
 VARIABLES = RESPONSES | _OF_WINGS | _SHAKEDOWN | _AXES
 """Every variable but those of bits (FLAGS) and the varied parameters (for these see PARAMETERS)."""
 
@@ -273,6 +285,8 @@ def of_function(data: xr.Dataset | xr.DataArray) -> bool:
 
 def attributes(name: str) -> dict[str, Any]:
     """Return CF attributes of a variable, parameter or flag. Raises KeyError if unknown."""
+    if name == "status_of_spheres":
+        return {"units": "1"} | attributes("status")
     if name in FLAGS:
         long_name, flags = FLAGS[name]
         return {
@@ -332,7 +346,7 @@ def answer_variables(
     scalars = {name: (lead, answers[name]) for name in responses}
     fields = {
         name: ((*lead, *entry.dims), answers[name])
-        for name, entry in (HISTORIES | PROFILES | FIELDS | BY_STRIKE).items()
+        for name, entry in (HISTORIES | PROFILES | FIELDS | BY_STRIKE | BY_SPHERE).items()
         if name in answers
     }
     remarks = answers["remarks"].astype(np.int32)

@@ -14,12 +14,14 @@ from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import case_fields
 from impactlab.model.cost import flies
 from impactlab.model.discretisation import Discretisation
+from impactlab.model.further_spheres import LEAPFROG_ALONE, sphere_rows
 from impactlab.model.impact import Impact
 from impactlab.model.laminate import LEAST_FIBRES, layer_rows
 from impactlab.model.parameters import (
     PARAMETERS,
     PROFILE_FIXED,
     SECTION,
+    SPHERES_FIXED,
     WORDS,
     Value,
     flatten,
@@ -37,7 +39,7 @@ from impactlab.solver import (
     SCHEMES,
     SUPPORTS,
 )
-from impactlab.solver.types import CASE, LAYERS, PROFILE
+from impactlab.solver.types import CASE, LAYERS, PROFILE, SPHERES
 
 NO_REST = (
     "must be 1 of a beam that its ends let fly, for it does not come to rest: change it, or hold "
@@ -120,6 +122,7 @@ def case_table(
             run = f"run {first_run + row}: " if varied else ""
             stated = engineering(float(cases[name][row]), PARAMETERS[name].units)
             raise ValueError(f"{run}{name} = {stated}: {reason}")
+    _check_further(cases, "run {}: " if varied else "", first_run)
     between = cases["strike_position"] * (cases["nodes"] - 1)
     refused = abs(between - between.round()) > _ON_NODE
     if refused.any():
@@ -138,11 +141,23 @@ def _is_long_on_foundation(cases: Any) -> Any:
     return (cases["scheme"] != SCHEMES.index("modal")) & (lengths > _LONGEST)
 
 
+def _check_further(cases: np.ndarray[Any, Any], run: str, first_run: int) -> None:
+    """Raise ValueError where further spheres have no node, or another scheme."""
+    for row, case in enumerate(cases if cases["further"].any() else (), first_run):
+        places = case.further_spheres[: case.further, 0]
+        reasons = [between_nodes(float(place), int(case.nodes)) for place in places]
+        if case.scheme != SCHEMES.index("leapfrog"):
+            reasons.append(LEAPFROG_ALONE)
+        if reason := next(filter(None, reasons), ""):
+            raise ValueError(f"{run.format(row)}further_spheres: {reason}")
+
+
 def _check_lists(varied: Mapping[str, Any]) -> None:
     """Raise ValueError where a parameter cannot be varied, or has no list of values."""
     for name, values in varied.items():
         if name in WORDS:
-            raise ValueError(f"varied: {name}: {PROFILE_FIXED}")
+            fixed = SPHERES_FIXED if name == "further_spheres" else PROFILE_FIXED
+            raise ValueError(f"varied: {name}: {fixed}")
         if isinstance(values, str) or np.ndim(values) != 1:
             raise ValueError(f"varied: {name} = {values!r}: must be a list with one value per run")
 
@@ -208,6 +223,10 @@ def _table(
     rows = layer_rows(impact.beam.layers or ())
     values["beam_layers"] = np.zeros((LAYERS, 4))
     values["beam_layers"][: len(rows)] = np.reshape(rows, (-1, 4))
+    spheres = sphere_rows(impact.further_spheres or ())
+    values["further_spheres"] = np.zeros((SPHERES, 3))
+    values["further_spheres"][: len(spheres)] = np.reshape(spheres, (-1, 3))
+    values["further"] = len(spheres)
     if np.any(np.less(discretisation.points, least := least_points(impact.beam))):
         raise ValueError(
             f"points = {discretisation.points!r}: must be at least {least} with so many layers, of "

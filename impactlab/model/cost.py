@@ -24,7 +24,8 @@ def solved(cases: Any) -> Any:
         symmetric = symmetric & (same | (cases["support_left"] != _ELASTIC))
     held = cases["axis_held_left"] == cases["axis_held_right"]
     symmetric = symmetric & (held | (cases["beam_model"] != BEAM_MODELS.index("von_karman")))
-    return np.where(symmetric & (cases["strike_position"] == 0.5), 0.5, 1.0)
+    middle = (cases["strike_position"] == 0.5) & (cases["further"] == 0)
+    return np.where(symmetric & middle, 0.5, 1.0)
 
 
 def _durations(cases: Any) -> Any:

@@ -14,6 +14,7 @@ import numpy as np
 from impactlab import wings
 from impactlab.model.bodies import Beam, Sphere
 from impactlab.model.checks import among, instance, integer, number, one_of, positive, require
+from impactlab.model.further_spheres import spheres_text
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI, Quantity, engineering
 from impactlab.solver import (
@@ -101,14 +102,22 @@ class Impact:
         what other ends need.
     strikes : int, default 1
         Number of times that a sphere with this velocity strikes this place, the beam at rest again
-        before each (solver/settle.py) unless `strike_interval` is stated: plastic strains and dent are carried over. Responses are
-        those of the last strike, but that dents, plastic strains and dissipated energies are what
-        all of them have left, and deflections count from the axis before the first. More than one
+        before each (solver/settle.py) unless `strike_interval` is stated: plastic strains and dent
+        are carried over. Responses are those of the last strike, but that dents, plastic strains
+        and dissipated energies are what all of them have left, and deflections count from the axis
+        before the first. More than one
         need ends that hold the beam, and none is for "solid".
     strike_interval : Quantity, optional
         Time from one strike to the next, in s, between which the beam goes on moving; at least the
         duration, after which the sphere of the strike before is taken away. By default the beam
         comes to rest in between.
+    further_spheres : str or sequence of mappings, optional
+        Further spheres like `sphere`, at most 8: the `strike_position` of each, which no other has,
+        its `velocity`, and its `delay` (by default 0), the time from the first sphere's touch to
+        its own; or rows of these in SI. Scalar responses are those of the first sphere. They need
+        the beam models "euler_bernoulli" or "elastic" and the scheme "leapfrog", one strike, a
+        point load and neither damping, foundation nor strain rate (solver/several_spheres.py). Kept
+        as text, "0.25 3.0 0.0005".
 
     Raises
     ------
@@ -138,6 +147,7 @@ class Impact:
     strike_position: SI[float] = SI("1", MID_SPAN)
     strikes: int = 1
     strike_interval: SI[float | None] = SI("s", None)
+    further_spheres: Any = None
 
     def __post_init__(self) -> None:
         instance("Impact", "sphere", self.sphere, Sphere)
@@ -178,6 +188,7 @@ class Impact:
         require(sound, "Impact", "beam_model", self.beam_model, f"must be {RESISTED_BEAM}")
         sound = np.not_equal(beam.shape, "laminate") | np.not_equal(self.beam_model, "von_karman")
         require(sound, "Impact", "beam_model", self.beam_model, STRETCHED_LAYERS)
+        object.__setattr__(self, "further_spheres", spheres_text(self))
 
     def _repr_html_(self) -> str:
         """Return a table of all parameters for notebooks, with units."""

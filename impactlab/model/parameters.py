@@ -76,6 +76,7 @@ _ROWS = (
     ("strike_position", "1", "place of the strike over the span", "impact.strike_position"),
     ("strikes", "1", "number of strikes on that place", "impact.strikes"),
     ("strike_interval", "s", "time between strikes", "impact.strike_interval"),
+    ("further_spheres", "1", "further spheres", "impact.further_spheres"),
     ("support_left", "1", "left support of the beam", "impact.beam.support_left"),
     ("support_right", "1", "right support of the beam", "impact.beam.support_right"),
     *(
@@ -136,12 +137,13 @@ _CHOICES = {
     "scheme": SCHEMES,
 }
 _WHOLE = ("strikes", "nodes", "points")
-WORDS = ("beam_profile", "beam_layers")
-"""Parameters of the section that are lists of numbers, as text."""
-SECTION = ("beam_shape", *WORDS, *(f"beam_{field}" for field in THICKNESSES))
+WORDS = ("beam_profile", "beam_layers", "further_spheres")
+"""Parameters that are lists of numbers, as text."""
+SECTION = ("beam_shape", *WORDS[:2], *(f"beam_{field}" for field in THICKNESSES))
 """Parameters of the section beside width and depth."""
 PROFILE_FIXED = "is the same in all runs: vary beam_width and beam_depth, which scale it"
-"""End of the message that refuses it as a factor."""
+SPHERES_FIXED = "is the same in all runs: vary velocity and strike_position of the first sphere"
+"""Ends of the messages that refuse such a list as a factor."""
 PARAMETERS: dict[str, Parameter] = {
     name: Parameter(
         *(name, units, text, tuple(path.split(".")), _CHOICES.get(name, ()), name in _WHOLE),

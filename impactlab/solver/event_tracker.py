@@ -21,16 +21,17 @@ EVENTS = record(
     t_begin ledger
     """
 )
-"""At the last two steps: indentation delta, delta_before (m), mid-span deflection w, w_before
-(m), force F (N); F_before (N) of laws with damping or strain rate. t_peak (s): time of the largest
+"""At the last two steps: indentation delta, delta_before (m), mid-span deflection w, w_before (m),
+force F (N); F_before (N) of laws with damping or strain rate. t_peak (s): time of the largest
 force, which is that of the largest indentation but for these; w_max (m). contacts: number begun;
 touching: 1 or 0; t_touch: when this contact began, t_begin: when the first one did, t_first_end:
-when that ended (NaN: not yet), pauses shorter than SHORT_PAUSE of it left out, time_in_contact of the ended ones (s); v_exit
-(m/s): the sphere's velocity when the last contact ended; v_s, v_mid (m/s): of sphere and mid-span
-at the last audit. impulse (N s). energy_error: largest imbalance over the initial energy, of all
-strikes. Of a further strike, before: how far the contact was loaded by those before it (m; -1 in
-the first); reloaded (m), F_reloaded (N): the largest approach, and the force at it, on the curve on
-which it reloads. ledger (J): what beam and contact have, by the balance, when a strike ends."""
+when that ended (NaN: not yet), pauses shorter than SHORT_PAUSE of it left out, time_in_contact of
+the ended ones (s); v_exit (m/s): the sphere's velocity when the last contact ended; v_s, v_mid
+(m/s): of sphere and mid-span at the last audit. impulse (N s). energy_error: largest imbalance over
+the initial energy, of all strikes. Of a further strike, before: how far the contact was loaded by
+those before it (m; -1 in the first); reloaded (m), F_reloaded (N): the largest approach, and the
+force at it, on the curve on which it reloads. ledger (J): what beam and contact have, by the
+balance, when a strike ends."""
 
 
 @compiled
@@ -48,18 +49,12 @@ def start(events: Record, contact: Record, strike: int) -> None:
 
 
 @compiled
-def approach_moving(events: Record) -> None:
-    """Let the sphere touch a beam that moves, perhaps away from it: contact is yet to begin."""
-    events.contacts = events.touching = events.t_begin = 0.0
-
-
-@compiled
 def again(events: Record, contact: Record) -> None:
     """Forget what happened in the strikes before, but for the energy and the contact's memory."""
     events.delta = events.delta_before = events.reloaded = contact.delta_r
     events.before, events.F_reloaded = contact.approach_m, 0.0
     events.F = events.F_before = contact.damping = 0.0
-    events.t_touch = events.time_in_contact = events.impulse = 0.0
+    events.t_touch = events.t_begin = events.time_in_contact = events.impulse = 0.0
     contact.peak_force, contact.largest = 0.0, 0.0
 
 
@@ -150,8 +145,8 @@ def update_events(
     elif events.touching == 0.0 and gap < 0.0:  # a new one has begun
         events.t_touch = t - dt * gap / (gap - gap_before)
         events.touching = 1.0
-        if events.contacts == 0.0:
-            events.t_begin = events.t_touch
+        if events.time_in_contact == 0.0:  # the beam had moved away from the touch at t = 0
+            events.t_begin, events.t_first_end, events.contacts = events.t_touch, np.nan, 0.0
         events.contacts += 1.0
         first = events.t_first_end - events.t_begin
         if events.t_touch - events.t_begin < (1.0 + SHORT_PAUSE) * first:

@@ -6,6 +6,7 @@ Each is compiled by itself, so that a study compiles only what it needs.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -19,12 +20,13 @@ from impactlab.solver import (
     resistance,
     resisted_modes,
     responses,
+    several_spheres,
     strip,
     timoshenko,
     von_karman,
 )
-from impactlab.solver.beam import half_node, make_beam, rest_beam
-from impactlab.solver.contact.history import make_pair
+from impactlab.solver.beam import BeamGrid, half_node, make_beam, rest_beam
+from impactlab.solver.contact.history import Pair, make_pair
 from impactlab.solver.contact.switch import DAMPED
 from impactlab.solver.fibre_plasticity import (
     keep_ends_elastic,
@@ -107,6 +109,8 @@ def _rest(model: BeamModel) -> Callable[..., int]:
         if settle is not None and (last or case.strike_interval == 0.0):
             settle(state)
             events.v_mid, row = 0.0, int(np.int64(0))
+        elif responses.sphere_leaves(events):  # on as it was, beyond the kink
+            kink.straighten(state.beam.w, state.grid, -contact.kink)
         pair, section, grid, beam, plastic = state[:5]
         dent, w = contact.delta_r, beam.w[row, grid.mid] - kink.height(grid, contact.kink)
         if lift is not None:
@@ -173,6 +177,21 @@ def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
     return run
 
 
+def _division(several: bool) -> Callable[..., tuple[BeamGrid, int]]:
+    """Return a function that divides length and time of run r; several: whether of spheres."""
+
+    @inlined
+    def divide(
+        case: Record, pair: Pair, section: FibreSection, table: Any, r: int
+    ) -> tuple[BeamGrid, int]:
+        if several:
+            fast, steps = discretise(table.fastest[r], pair, section)
+            return grid_of(case, fast.dx, fast.dt, section.stiffness), steps
+        return discretise(case, pair, section)
+
+    return divide
+
+
 def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[..., None]:
     """Return the kernel of a model of the beam.
 
@@ -182,19 +201,22 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
 
     It solves every case of R, by records and arrays of as many rows. cases: CASE records. fibres:
     as by model.section.fibre_table. table: of modes, by model.beam_modes, which all cases share, or
-    empty. answers: blank RESPONSE records, filled. contacts, events:
-    zeros, CONTACT and EVENTS records to work in. samples: shape (R, 5, S), filled with force,
-    mid-span deflection, mid-span curvature, sphere displacement and indentation at S equal
-    intervals from 0 to the duration, of the last strike; S = 0 for none. series: shape (R, n,
-    len(SERIES)), filled with outputs.SERIES of each of n strikes; n = 0 for none. deflection
-    (R, nodes), plastic_strain and peeq (R, nodes, P // 2): filled with the beam's final state, at
-    rest after several strikes; length 0 for none. A model whose sections have P fibres, outermost
-    below first, fills (R, nodes, P). A run that diverges leaves NaN and its status.
+    empty; with further spheres, that of several_spheres.py. answers: blank RESPONSE records,
+    filled. contacts, events: zeros, CONTACT and EVENTS records to work in. samples: shape (R, 5,
+    S), filled with force, mid-span deflection, mid-span curvature, sphere displacement and
+    indentation at S equal intervals from 0 to the duration, of the last strike; S = 0 for none.
+    series: shape (R, n, len(SERIES)), filled with outputs.SERIES of each of n strikes; n = 0 for
+    none. deflection (R, nodes), plastic_strain and peeq (R, nodes, P // 2): filled with the beam's
+    final state, at rest after several strikes; length 0 for none. A model whose sections have P
+    fibres, outermost below first, fills (R, nodes, P). A run that diverges leaves NaN and its
+    status.
 
     A record does not keep its array alive in compiled code, so kernels make no arrays of records:
     those of all runs are the caller's, who holds them until this returns.
     """
     make, renew, take, deflect = model.make, model.renew, model.take, model.deflect
+    join, read = (None, None) if model.further is None else model.further
+    divide = _division(join is not None)
     run = _run(model, extended)
     make_section_room, cut = model.section or (
         make_room,
@@ -204,7 +226,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     def kernel(
         cases: Array,
         fibres: Array,
-        table: Array,
+        table: Any,
         answers: Array,
         contacts: Array,
         events: Array,
@@ -227,7 +249,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
             for r in range(start, stop):
                 case, pair = cases[r], make_pair(cases[r])
                 section = cut(case, fibres[r], room)
-                grid, steps = discretise(case, pair, section)
+                grid, steps = divide(case, pair, section, table, r)
                 rest_beam(beam)
                 rest_plastic_state(plastic, section)
                 keep_ends_elastic(plastic, grid)
@@ -235,10 +257,17 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
                     renew(extra, case, section, grid)
                 else:
                     extra = make(case, section, grid)
-                state = State(pair, section, grid, beam, plastic, extra)
+                if join is None:
+                    state = State(pair, section, grid, beam, plastic, extra)
+                else:
+                    alone = State(pair, section, grid, beam, plastic, extra)
+                    together = join(alone, table, r, case)
+                    state = State(pair, section, grid, beam, plastic, together)
                 now = run(
                     case, answers[r], contacts[r], events[r], samples[r], series[r], state, steps
                 )
+                if read is not None:
+                    read(state, case, answers[r], table.answers[r])
                 if now < 0:
                     samples[r] = np.nan
                     continue
@@ -271,6 +300,7 @@ _EXTENDED = {
     "spring_mass": _EXTENDED_LUMPED,
     "rigid": _EXTENDED_LUMPED,
 }
+_SEVERAL_SPHERES = _kernel("several_spheres", several_spheres.MODEL)
 _MODAL = (_kernel("modal", modal.MODEL), _kernel("extended_modal", resisted_modes.MODEL, True))
 
 
@@ -286,8 +316,15 @@ def is_extended(cases: Array) -> Array:
     return extended
 
 
-def kernel_of(beam_model: int, scheme: int, extended: bool = False) -> Callable[..., None]:
-    """Return the kernel for a beam model and a scheme, both as numbers; extended: see _kernel."""
+def kernel_of(
+    beam_model: int, scheme: int, extended: bool = False, several: bool = False
+) -> Callable[..., None]:
+    """Return the kernel for a beam model and a scheme, both as numbers.
+
+    extended: see _kernel. several: whether of further spheres.
+    """
+    if several:
+        return _SEVERAL_SPHERES
     if scheme == MODAL:
         return _MODAL[extended]
     return (_EXTENDED if extended else _LEAPFROG)[BEAM_MODELS[beam_model]]

@@ -32,7 +32,7 @@ Point = tuple[float, float, float, float, float]
 
 
 @compiled
-def _sample(
+def fill_samples(
     out: Array,
     step: int,
     steps: int,
@@ -86,39 +86,75 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
             w, kappa = retrace(state)
             moved = j * (last + 0.5 * (j + 1) * fall)
             before, point = point, (0.0, w, kappa, w_s + moved, delta + moved - (w - w_mid))
-            _sample(samples, step + j, steps, before, point)
+            fill_samples(samples, step + j, steps, before, point)
         return leapt, point
 
     return fly
 
 
-def _at_touch(model: BeamModel) -> Callable[..., tuple[float, float]]:
-    """Return a function for where a sphere touches a beam that was struck before."""
+def _touch_down(model: BeamModel) -> Callable[..., tuple[float, float]]:
+    """Return a function that begins a strike."""
     beam_energy, mid_curvature, sag = model.energy, model.curvature, model.sag
-    fast = model.flight is not None
+    fast, land = model.flight is not None, None if model.flight is None else model.flight.land
 
     @compiled
-    def at_touch(
-        case: Record, state: State, contact: Record, events: Record, now: int
+    def touch_down(
+        case: Record, state: State, contact: Record, events: Record, strike: int, now: int
     ) -> tuple[float, float]:
         """Return the sphere's displacement (m), and the whole energy (J) but for its velocity's.
 
-        A beam that moves has its energy from the balance of the strikes before.
+        At first touch, where a beam that was struck before is at rest, or moves on: then its energy
+        is that of the balance of the strikes before.
         """
+        event_tracker.start(events, contact, strike)
+        if strike == 0:
+            return 0.0, 0.0
         pair, section, grid, beam, plastic = state[:5]
-        w_s = beam.w[now, grid.mid] - kink.height(grid, contact.kink) + contact.delta_r
+        w_mid = beam.w[now, grid.mid] - kink.height(grid, contact.kink)
+        events.w = events.w_before = events.w_max = w_mid
+        w_s = w_mid + contact.delta_r
         if pair.bending != 0.0:
             elastic = plastic.M_0[grid.mid] / section.stiffness - mid_curvature(state, now)
             w_s += pair.bending * elastic
         if sag is not None:
             w_s += sag(state)
         if case.strike_interval > 0.0:
+            if land is not None:
+                land(state, beam.w[now, grid.mid])
             return w_s, events.ledger - case.sphere_mass * case.gravity * w_s
         stored, lost = contact_history.energies(contact, pair, contact.delta_r, fast)
         in_beam = beam_energy(state, 0, 0.0, 0.0)
         return w_s, in_beam + stored + lost - case.sphere_mass * case.gravity * w_s
 
-    return at_touch
+    return touch_down
+
+
+@compiled
+def _take_away(
+    case: Record,
+    events: Record,
+    sphere: tuple[float, float, float, float],
+    v_mid: float,
+    energy: float,
+    step: int,
+    steps: int,
+    end: int,
+    interval: int,
+) -> int:
+    """Take the sphere away once it has left, `steps` after it came; return the last step.
+
+    sphere, energy: see _audit. v_mid: of the struck node (m/s). end: the last step so far.
+    """
+    w_s, v_s, v_after, _ = sphere
+    if step <= steps:
+        events.v_s, events.v_mid = v_s, v_mid
+    if step == end:
+        taken = 0.5 * case.sphere_mass * (case.velocity**2 - v_s * v_after)
+        events.ledger = energy + taken + case.sphere_mass * case.gravity * w_s
+    if step == steps and interval > 0 and sphere_leaves(events):
+        events.w_max = _AWAY
+        return max(interval - 1, steps)
+    return end
 
 
 def _audit(model: BeamModel) -> Callable[..., float]:
@@ -213,7 +249,7 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
     move_beam, mid_curvature, spread = model.step, model.curvature, model.spread
     flight_stride, fly = model.flight_stride, None if model.flight is None else _leaps(model.flight)
     touch, imbalance = _contact(model, extended), _audit(model)
-    at_touch, land = _at_touch(model), None if model.flight is None else model.flight.land
+    touch_down = _touch_down(model)
 
     @inlined
     def march(
@@ -237,22 +273,13 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
         w, u, dt, mid = beam.w, beam.u, grid.dt, grid.mid
         stride = min(max(_LEAST_STRIDE, steps // _AUDITS), _LARGEST_STRIDE)
         # half a step before the first touch
-        w_s, v_s, per_mass = 0.0, case.velocity - 0.5 * dt * case.gravity, 1.0 / case.sphere_mass
-        rest = 0.0
-        if strike > 0:
-            w_s, rest = at_touch(case, state, contact, events, now)
-            w_mid = w[now, mid] - kink.height(grid, contact.kink)
-            events.w = events.w_before = events.w_max = w_mid
-            if land is not None and case.strike_interval > 0.0:
-                land(state, w[now, mid])
+        v_s, per_mass = case.velocity - 0.5 * dt * case.gravity, 1.0 / case.sphere_mass
+        w_s, rest = touch_down(case, state, contact, events, strike, now)
         # a plain 0 would be a type of its own, and its callees compiled twice
         step = int(np.int64(0))
         to_audit, end = stride, steps
         here = (0.0, 0.0, 0.0, 0.0, 0.0)
         ahead = 0.0  # the mean under the pressure, of mid-span
-        event_tracker.start(events, contact, strike)
-        if strike > 0 and case.strike_interval > 0.0:
-            event_tracker.approach_moving(events)
         while step <= end:
             t, u_mid = step * dt, u[mid]
             w_mid = w[now, mid] - kink.height(grid, contact.kink)
@@ -261,7 +288,7 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
             event_tracker.update_events(events, approach, contact.delta_r, w_mid, F, v_s, t, dt)
             if samples.shape[1] > 0:
                 before, here = here, (F, w_mid, mid_curvature(state, now), w_s, delta)
-                _sample(samples, step, steps, before, here)
+                fill_samples(samples, step, steps, before, here)
 
             if fly is not None and events.touching == 0.0 and F == 0.0 and pair.bending == 0.0:
                 sphere = (w_s, dt * v_s, dt * dt * case.gravity, delta)
@@ -287,22 +314,16 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
             if to_audit == 0 or step == end:
                 to_audit = max(stride, flight_stride)
                 catch_up(plastic, section)
-                if step <= steps:
-                    events.v_s, events.v_mid = v_s, u_mid / dt
                 sphere = (w_s, v_s, v_after, approach)
                 error = imbalance(case, state, contact, now, sphere, F, u_mid, excess, rest)
                 events.energy_error = max(events.energy_error, error)
                 if not error < 1.0:
                     return -1
-                if step == end:
-                    taken = 0.5 * case.sphere_mass * (case.velocity**2 - v_s * v_after)
-                    events.ledger = rest + taken + case.sphere_mass * case.gravity * w_s
-                if step == steps and interval > 0 and sphere_leaves(events):
-                    ahead, end, events.w_max = _AWAY, max(interval - 1, steps), _AWAY
+                end = _take_away(case, events, sphere, u_mid / dt, rest, step, steps, end, interval)
+                ahead += _AWAY if end > step == steps else 0.0
             w_s, v_s, now = w_s + dt * v_after, v_after, 1 - now
             step += 1
-        if interval == 0 or not sphere_leaves(events):
-            kink.straighten(w, grid, contact.kink)
+        kink.straighten(w, grid, contact.kink)
         return 1 - now
 
     return march

@@ -205,6 +205,7 @@ def grid_of(case: Record, dx: float, dt: float, EI: float) -> BeamGrid:
     """Return the grid of a case's beam, of spacing dx (m) and step dt (s)."""
     ends, struck = (case.support_left, case.support_right), struck_node(case)
     alike = case.beam_model != VON_KARMAN or case.axis_held_left == case.axis_held_right
+    alike = alike and case.further == 0
     return make_grid(
         case.nodes,
         dx,

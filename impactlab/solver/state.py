@@ -31,14 +31,25 @@ class Flight(NamedTuple):
     leap(state, now, gap, sphere, w_max, room): make many steps at once; return how many, 0 where an
     event may be near. beam.w and beam.u at mid-span follow. retrace(state): make the steps of the
     last leap one by one, aside; return deflection (m) and curvature (1/m) of mid-span after the
-    next. largest(state, w_max): the largest deflection, of the leaps, too (m). land(state, w): forget
-    all leaps so far; mid-span is at w (m).
+    next. largest(state, w_max): the largest deflection, of the leaps, too (m). land(state, w):
+    forget all leaps so far; mid-span is at w (m).
     """
 
     leap: Callable[..., int]
     retrace: Callable[..., tuple[float, float]]
     largest: Callable[..., float]
     land: Callable[..., None]
+
+
+class FurtherSpheres(NamedTuple):
+    """Compiled functions of a model that moves further spheres with the beam.
+
+    join(state, table, r, case): State.extra of run r with them, from a table made outside. read(
+    state, case, answer, answers): fill in their answers, and what they add to the run's.
+    """
+
+    join: Callable[..., Any]
+    read: Callable[..., None]
 
 
 class BeamModel(NamedTuple):
@@ -59,7 +70,7 @@ class BeamModel(NamedTuple):
     width, both times the width, N m. bend_back(state, now, contact, growth): let the
     kink of kink.py grow by so much, rad. section: functions that make room for a section and cut
     it; None: those of section.py for half of the fibres. settle(state): put it to rest, as its
-    plastic strains leave it (settle.py); None: it cannot be struck twice.
+    plastic strains leave it (settle.py); None: it cannot be struck twice. further: see above.
     """
 
     make: Callable[..., Any]
@@ -79,3 +90,4 @@ class BeamModel(NamedTuple):
     moments: Callable[..., tuple[float, float]] | None = None
     bend_back: Callable[..., None] | None = None
     section: tuple[Callable[..., Any], Callable[..., Any]] | None = None
+    further: FurtherSpheres | None = None

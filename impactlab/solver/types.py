@@ -43,6 +43,8 @@ def record(real: str, integers: str = "") -> np.dtype[Any]:
 
 LAYERS = 8
 """Most layers of a laminate that a case holds, beside the outer one."""
+SPHERES = 8
+"""Most further spheres that a case holds."""
 PROFILE = 16
 """Most points of the width over the depth that a case holds."""
 CASE = record(
@@ -63,12 +65,17 @@ CASE = record(
     width_stiffness width_inertia width_lever width_twist axis_compliance axis_bending
     """,
     integers="contact beam_model load contact_prestress support_left support_right"
-    " axis_held_left axis_held_right beam_shape nodes points rule scheme strikes",
+    " axis_held_left axis_held_right beam_shape nodes points rule scheme strikes further",
 )
 CASE = np.dtype(
     (
         np.record,
-        [*CASE.descr, ("beam_profile", float, (PROFILE, 2)), ("beam_layers", float, (LAYERS, 4))],
+        [
+            *CASE.descr,
+            ("beam_profile", float, (PROFILE, 2)),
+            ("beam_layers", float, (LAYERS, 4)),
+            ("further_spheres", float, (SPHERES, 3)),
+        ],
     )
 )
 """Record type of the case table: one record per run, everything the kernels need to know of it.
@@ -77,9 +84,10 @@ The fields are the parameters of model/parameters.py, in SI, with contact law, b
 supports, shape, rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS,
 SUPPORTS, SHAPES, RULES and SCHEMES), the sphere's mass and the shear coefficient resolved,
 thicknesses that the shape does not have as 0, the points of a profile, (PROFILE, 2), and the rows
-of layers, (LAYERS, 4), 0 after the last; the time between strikes, 0 where the beam rests in
-between; the duration in s; whether supports hold the axis; and
-what follows from them: of the section (model/section.py) rho A, rho I, k G A, the stress in the
-outermost fibre over the bending moment, the plastic modulus and the thickness of the outer layer,
-and of contact and strip those of model/contact_compliance.py.
+of layers, (LAYERS, 4), 0 after the last; rows of further spheres, (SPHERES, 3), as many as
+`further` says: place, velocity and delay; the time between strikes, 0 where the beam rests in
+between; the duration in s; whether supports hold the axis; and what follows from them: of the
+section (model/section.py) rho A, rho I, k G A, the stress in the outermost fibre over the bending
+moment, the plastic modulus and the thickness of the outer layer, and of contact and strip those of
+model/contact_compliance.py.
 """

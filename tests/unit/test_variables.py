@@ -14,6 +14,7 @@ from impactlab import variables as dataset
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.variables import (
+    BY_SPHERE,
     BY_STRIKE,
     COORDINATES,
     FAILED,
@@ -35,7 +36,7 @@ from impactlab.variables import (
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
-TABLE = RESPONSES | HISTORIES | PROFILES | FIELDS | BY_STRIKE | COORDINATES | PARAMETERS
+TABLE = RESPONSES | HISTORIES | PROFILES | FIELDS | BY_STRIKE | BY_SPHERE | COORDINATES | PARAMETERS
 BITS = {name: bit for name, (bit, _) in STATUS_FLAGS.items()}
 WHOLE_RUN = {"diverged", "energy_out_of_balance", "earlier_strike_unfinished", "stopped"}
 
@@ -49,7 +50,7 @@ def test_units_are_udunits_and_names_are_spelled_out(name):
 
 
 def test_no_name_is_used_twice():
-    tables = (RESPONSES, HISTORIES, PROFILES, FIELDS, BY_STRIKE, COORDINATES, PARAMETERS)
+    tables = (RESPONSES, HISTORIES, PROFILES, FIELDS, BY_STRIKE, BY_SPHERE, COORDINATES, PARAMETERS)
     assert sum(map(len, tables)) == len(TABLE)
     # an unknown variable is an error
     with pytest.raises(KeyError, match="contact_farce"):

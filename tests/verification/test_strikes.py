@@ -8,6 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 import impactlab as il
+from impactlab.solver.outputs import SERIES
 from impactlab.verification.solutions.contact_laws import law_on_half_space
 
 from ..end_modes import held
@@ -211,6 +212,46 @@ def test_a_strip_at_rest_is_the_mean_of_its_swing():
     assert run.energy_error.item() < 5e-3
 
 
+@pytest.mark.parametrize(("scheme", "nodes"), [("leapfrog", 41), ("modal", 33)])
+def test_a_damped_beam_comes_to_rest_by_itself(scheme, nodes):
+    """Alike what static equilibrium leaves, with fibres that have yielded."""
+    impact = replace(FLOATING, velocity=20.0, strikes=3)
+    impact = replace(impact, beam=replace(impact.beam, mass_damping=600.0))
+    grid = il.Discretisation(nodes=nodes, scheme=scheme)
+    swinging = replace(impact, strike_interval="90 ms")
+    still, run = (
+        il.simulate(case, grid, duration="12 ms", samples=2) for case in (impact, swinging)
+    )
+    assert np.abs(series(still, "residual_deflection")).min() > 1e-4
+    for name in SERIES:
+        assert series(run, name) == pytest.approx(series(still, name), rel=1e-6), name
+    assert run.energy_error.item() < 2e-3
+
+
+@pytest.mark.parametrize("scheme", ["leapfrog", "modal"])
+def test_energy_is_balanced_over_all_strikes_on_a_moving_beam(scheme):
+    """Without damping, with what each sphere brings and takes away."""
+    impact = replace(FLOATING, velocity=1.0, strikes=5, strike_interval="31 ms")
+    grid = il.Discretisation(nodes=41, scheme=scheme)
+    grids = [replace(grid, courant=courant) for courant in (0.8, 0.2)]
+    runs = [il.simulate(impact, each, duration="22 ms", samples=2) for each in grids]
+    errors = [run.energy_error.item() for run in runs]
+    assert 4.0 * errors[1] < errors[0] < 5e-3
+    still = il.simulate(replace(impact, strike_interval=None), grid, duration="22 ms", samples=2)
+    forces, at_rest = series(runs[1], "peak_force"), series(still, "peak_force")
+    assert np.abs(forces[1:] / at_rest[1:] - 1.0).max() > 0.02  # it does move
+
+
+def test_a_rigid_beam_does_not_know_of_the_time_between():
+    impact = replace(FLOATING, beam_model="rigid", strikes=4)
+    still, run = (
+        il.simulate(case, il.Discretisation(nodes=5), duration="1 ms", samples=2)
+        for case in (impact, replace(impact, strike_interval="3 ms"))
+    )
+    for name in SERIES:
+        assert series(run, name) == pytest.approx(series(still, name), rel=1e-9), name
+
+
 @pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="takes minutes as plain Python")
 def test_both_schemes_agree_on_ten_strikes():
     impact = replace(il.paper_impact(5.0), strikes=10)
@@ -273,6 +314,10 @@ def test_a_strike_that_does_not_end_says_so():
             r"^Impact\.strikes = 2: must be 1 with a model of the beam other",
         ),
         ({"beam": "free"}, r"^strikes = 2: must be 1 of a beam that its ends let fly"),
+        (
+            {"strike_interval": "0.9 ms"},
+            r"^strike_interval = 900 µs: must be at least the duration",
+        ),
         ({"frames": 5}, r"^simulate\.frames = 5: must be 0 with several strikes"),
     ],
 )

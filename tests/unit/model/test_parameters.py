@@ -24,6 +24,7 @@ OTHER_NAMES = {
 OTHER_COUNTS = {"strikes": 91, "nodes": 55, "points": 6}
 STATED = {"sphere_mass": 2.5, "element_size": 2e-3, "elements_per_radius": 3.0}
 STATED |= {"shear_coefficient": 0.7, "beam_wall_thickness": 3e-3}
+STATED |= {"strike_interval": 0.05, "further_spheres": "0.25 3.0 0.0005"}
 STATED |= {"beam_profile": "0.0 0.5, 1.0 1.0"}
 STATED |= {"beam_layers": "0.5 70000000000.0 200000000.0 2700.0"}
 STATED |= {"beam_flange_thickness": 3e-3, "beam_web_thickness": 1e-3}
@@ -48,7 +49,7 @@ OTHERS = {name: another(name) for name in PARAMETERS}
 TOGETHER = {
     name: value
     for name, value in OTHERS.items()
-    if name not in ("elements_per_radius", "beam_profile", "beam_layers")
+    if name not in ("elements_per_radius", "beam_profile", "beam_layers", "further_spheres")
     and "thickness" not in name
 } | {"beam_shape": "rectangle"}
 TOGETHER |= {"beam_rate_sensitivity": 0.0, "strikes": 1}

@@ -60,6 +60,8 @@ REFUSED = {
     ("Impact", "contact_prestress"): ["none", "Bending", "", None, 0],
     ("Impact", "load"): ["patch", "Point", "", None, 0],
     ("Impact", "strike_position"): [0.0, -0.1, 1.0, 1.1, NAN, INFINITE, "1 m", None, True],
+    ("Impact", "strike_interval"): [0, -1.0, NAN, INFINITE, "1 A", True],
+    ("Impact", "further_spheres"): ["0.25 0 0", "0.25 1 -1", "0.2 1", [{}], "", 5, "0.5 1 0"],
     ("Impact", "strikes"): [0, 1.5, -1, NAN, INFINITE, "2", None, True],
     ("Discretisation", "nodes"): [0, 3, 4, 200, 201.5, -201, NAN, INFINITE, "201", None, True],
     ("Discretisation", "points"): [1, 0, -9, 2.5, NAN, "9", None],

@@ -38,7 +38,7 @@ def test_a_wrong_run_is_named_with_its_field():
 
 RUNS = 40
 RANDOM = np.random.default_rng(3)
-NAMES = tuple(name for name in PARAMETERS if name not in SECTION)
+NAMES = tuple(name for name in PARAMETERS if name not in {*SECTION, "further_spheres"})
 """Of any beam; those of one shape are in test_shapes."""
 CONTRADICTING = (SIZES[1], "beam_rate_sensitivity", "strikes")
 TOGETHER = tuple(name for name in NAMES if name not in CONTRADICTING)

@@ -64,9 +64,9 @@ def test_every_variable_is_there_on_its_dimensions(run):
         "duration": DURATION,
     }
     names = {*PARAMETERS, "duration"} - {*SIZES}  # of the 3-D model alone
-    names -= {*SECTION} - {"beam_shape"}
+    names -= {*SECTION, "strike_interval", "further_spheres"} - {"beam_shape"}
     assert {name: run[name].item() for name in names} == expected
-    assert set(run.coords) == {*names, *COORDINATES} - {"run", "field_time", "strike"}
+    assert set(run.coords) == {*names, *COORDINATES} - {"run", "field_time", "strike", "sphere"}
 
 
 def test_default_discretisation():

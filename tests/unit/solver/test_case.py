@@ -60,7 +60,8 @@ def test_a_record_has_every_value_in_its_place(make_case):
     }
     expected = values | numbers_of_names | {"duration": 0.7}
     expected |= dict.fromkeys((*DERIVED, *THICKNESSES), 0.0) | {"axis_held_left": 1}
-    lists = {"beam_profile", "beam_layers"}
+    expected |= {"strike_interval": 0.0, "further": 0}
+    lists = {"beam_profile", "beam_layers", "further_spheres"}
     assert not any(case[name].any() for name in lists)
     names = {*CASE.names} - {*OF_SECTION} - lists
     assert {name: case[name] for name in names} == expected

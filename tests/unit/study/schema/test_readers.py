@@ -164,11 +164,12 @@ def test_ranges(read, grid, name, given, values):
 def test_every_parameter_can_be_varied(read, grid):
     values = flatten(paper_impact(), Discretisation()) | {"sphere_mass": 1.4}
     values |= {"shear_coefficient": 0.8, "beam_shape": "tube", "beam_wall_thickness": 0.003}
-    values |= {"beam_flange_thickness": 0.003, "beam_web_thickness": 0.003}
+    values |= {"beam_flange_thickness": 0.003, "beam_web_thickness": 0.003, "strike_interval": 1}
     assert values.keys() == PARAMETERS.keys() - {
         *SIZES,
         "beam_profile",
         "beam_layers",
+        "further_spheres",
     }  # see test_solid
     square = {"shape": "box", "width": 0.0278, "wall_thickness": "4 mm"}
     i = {"shape": "i", "flange_thickness": "4 mm", "web_thickness": "4 mm"}
