@@ -131,7 +131,7 @@ def run_dataset(
     grid = discretisation.resolved([impact.beam_model])
     cases = case_table(impact, grid, duration=duration)
     several = impact.strikes if impact.strikes > 1 else 0
-    answers = solve(cases, samples=samples, profiles=True, strikes=several)
+    answers = solve(cases, samples=samples, profiles=True, strikes=several, by_sphere=True)
     axes = {"time": np.linspace(0.0, duration, samples)}
     if several:
         axes["strike"] = np.arange(1.0, several + 1.0)
@@ -328,7 +328,9 @@ def _combined(
 
 def _in_si(name: str, values: Any) -> Any:
     values = as_text(values)
-    if name not in PARAMETERS or PARAMETERS[name].choices or not isinstance(values, list | tuple):
+    entry = PARAMETERS.get(name)
+    words = entry is None or entry.choices or entry.any_word
+    if words or not isinstance(values, list | tuple):
         return values
     return [in_si(name, value, PARAMETERS[name].units) for value in values]
 

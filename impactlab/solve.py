@@ -84,17 +84,22 @@ solve(case_table(impact, grid, duration=1e-6, varied=varied))
 
 
 def solve(
-    cases: np.ndarray[Any, Any], *, samples: int = 0, profiles: bool = False, strikes: int = 0
+    cases: np.ndarray[Any, Any],
+    *,
+    samples: int = 0,
+    profiles: bool = False,
+    strikes: int = 0,
+    by_sphere: bool = False,
 ) -> dict[str, np.ndarray[Any, Any]]:
     """Run the kernels over a case table, on the calling thread and without the GIL.
 
     samples: length of each history (0: none). profiles: keep the fields along the beam, for which
     all cases must share nodes and points; raises ValueError where they do not, or where further
     spheres meet what their kernel lacks. strikes: the number that all cases have, to keep what
-    solver.outputs.SERIES has of each. Returns by name, of R runs: the fields of
-    solver.outputs.RESPONSE, (R,); histories, (R, samples); profiles, (R, nodes, points), or (R,
-    nodes) for the deflection; series, (R, strikes); of several spheres, variables.BY_SPHERE, (R,
-    spheres) or (R, spheres, samples).
+    solver.outputs.SERIES has of each. by_sphere: keep the answers of further spheres. Returns by
+    name, of R runs: the fields of solver.outputs.RESPONSE, (R,); histories, (R, samples); profiles,
+    (R, nodes, points), or (R, nodes) for the deflection; series, (R, strikes); of several spheres,
+    variables.BY_SPHERE, (R, spheres) or (R, spheres, samples).
     """
     if profiles and any(np.unique(cases[name]).size > 1 for name in ("nodes", "points", "rule")):
         raise ValueError("profiles need the same nodes, points and rule in every run")
@@ -137,7 +142,7 @@ def solve(
         columns |= zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)
     if strikes:
         columns |= zip(BY_STRIKE, np.moveaxis(series, 2, 0), strict=True)
-    if further:
+    if further and by_sphere:
         columns |= _by_sphere(columns, further[0])
     if profiles:
         columns["plastic_strain"], columns["equivalent_plastic_strain"] = strains

@@ -49,7 +49,9 @@ def spheres_text(impact: Any) -> str | None:
     spheres = impact.further_spheres
     if spheres is None:
         return None
-    shown, reason = str(spheres).replace(":", ""), ""
+    # a colon ends the value in messages
+    shown = spheres if ":" not in repr(spheres) else str(spheres).replace(":", "")
+    reason = ""
     try:
         rows = sphere_rows(spheres)
     except (TypeError, ValueError) as error:

@@ -38,7 +38,9 @@ def test_a_sphere_that_comes_too_late_changes_no_bit():
     late = replace(PAPER, further_spheres="0.6 5 0.002001")
     both = il.simulate(late, GRID, duration="2 ms", samples=101)
     for name, variable in alone.variables.items():
-        assert np.array_equal(both[name].values, variable.values, equal_nan=name in alone), name
+        assert np.array_equal(
+            both[name].values, variable.values, equal_nan=variable.dtype == float
+        ), name
     assert both.status_of_spheres.values[0] == alone.status.item()
     assert both.status_of_spheres.values[1] & 2  # its first contact is unfinished
     assert (both.contact_force_of_spheres.values[1] == 0.0).all()
@@ -46,7 +48,7 @@ def test_a_sphere_that_comes_too_late_changes_no_bit():
 
 
 def test_the_blows_move_a_free_beam():
-    """Its momentum is what the forces brought, its centre where they moved it, one at an end."""
+    """Its centre is where the forces moved it, of which one acts on an end."""
     impact = replace(held("free", "free", 0.25, il.paper_impact(5.0)), gravity=0.0)
     blows = [
         {"strike_position": 1.0, "velocity": 2.0, "delay": "0.13 ms"},
@@ -59,10 +61,6 @@ def test_the_blows_move_a_free_beam():
     assert (driven > 0.05 * driven.max()).all()
     assert moved == pytest.approx(driven.sum(), rel=1e-4)
     assert forces.integrate("time").values == pytest.approx(run.impulse_of_spheres.values, rel=1e-4)
-    left = run.status_of_spheres.values & 8 == 0
-    lost = run.sphere_mass.item() * (np.array([5.0, 2.0, 4.0]) + run.rebound_velocity_of_spheres)
-    assert left.any()
-    assert run.impulse_of_spheres.values[left] == pytest.approx(lost.values[left], rel=1e-9)
 
 
 def test_energy_is_balanced_over_all_spheres():

@@ -37,6 +37,8 @@ PAPER: dict[str, Any] = {
     "axis_held_left": 1,
     "axis_held_right": 1,
     "strikes": 1,
+    "strike_interval": 0.0,
+    "further": 0,
     "beam_model": BEAM_MODELS.index("euler_bernoulli"),
 }
 
@@ -48,6 +50,9 @@ def test_steps_of_bending_and_of_a_bar_wave_by_hand():
     wave = node_steps(PAPER | {"scheme": SCHEMES.index("modal")})
     assert wave == pytest.approx(0.5 * 201 * 1e-3 / (0.5 * dx / speed))
     assert node_steps(PAPER | {"strikes": 91}) == pytest.approx(91 * node_steps(PAPER))
+    apart = PAPER | {"strikes": 3, "strike_interval": 5e-3}
+    assert node_steps(apart) == pytest.approx(11 * node_steps(PAPER))
+    assert node_steps(PAPER | {"further": 1}) == pytest.approx(2 * node_steps(PAPER))
     timoshenko = node_steps(PAPER | {"beam_model": BEAM_MODELS.index("timoshenko")})
     assert timoshenko == pytest.approx(2.0 * wave)
     # columns are many runs at once
