@@ -329,8 +329,8 @@ def _combined(
 def _in_si(name: str, values: Any) -> Any:
     values = as_text(values)
     entry = PARAMETERS.get(name)
-    words = entry is None or entry.choices or entry.any_word
-    if words or not isinstance(values, list | tuple):
+    is_text = entry is None or entry.choices or entry.any_word
+    if is_text or not isinstance(values, list | tuple):
         return values
     return [in_si(name, value, PARAMETERS[name].units) for value in values]
 

@@ -153,13 +153,13 @@ def solve(
 def _by_sphere(columns: dict[str, Any], table: Table) -> dict[str, np.ndarray[Any, Any]]:
     """Return the answers by sphere, of which the first one's are in the columns."""
     fields = table.answers.dtype.names or ()
-    others = {name: table.answers[name] for name in fields}
-    others["contact_force"] = table.samples[:, :, 0]
+    further = {name: table.answers[name] for name in fields}
+    further["contact_force"] = table.samples[:, :, 0]
     lost = table.answers["status"] & DIVERGED != 0
-    others["contact_force"][lost] = np.nan
+    further["contact_force"][lost] = np.nan
     stems = {name: name.removesuffix("_of_spheres") for name in BY_SPHERE}
     return {
-        name: np.concatenate([columns[stem][:, np.newaxis], others[stem]], axis=1)
+        name: np.concatenate([columns[stem][:, np.newaxis], further[stem]], axis=1)
         for name, stem in stems.items()
         if stem in columns
     }

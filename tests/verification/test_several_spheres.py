@@ -17,7 +17,7 @@ PAPER = replace(il.paper_impact(5.0), strike_position=0.25)
 
 
 def test_mirrored_spheres_do_the_same():
-    """Where fibres yield, too."""
+    """Yielding fibres are mirrored with the rest."""
     impact = replace(PAPER, velocity=20.0)
     impact = replace(impact, further_spheres=[{"strike_position": 0.75, "velocity": "20 m/s"}])
     run = il.simulate(impact, GRID, duration="1.5 ms", samples=101)
