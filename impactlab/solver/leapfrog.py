@@ -149,8 +149,8 @@ def _take_away(
     if step <= steps:
         events.v_s, events.v_mid = v_s, v_mid
     if step == end:
-        taken = 0.5 * case.sphere_mass * (case.velocity**2 - v_s * v_after)
-        events.ledger = energy + taken + case.sphere_mass * case.gravity * w_s
+        spent = 0.5 * case.sphere_mass * (case.velocity**2 - v_s * v_after)
+        events.ledger = energy + spent + case.sphere_mass * case.gravity * w_s
     if step == steps and interval > 0 and sphere_leaves(events):
         events.w_max = _AWAY
         return max(interval - 1, steps)

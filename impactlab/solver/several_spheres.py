@@ -161,8 +161,8 @@ def _push(state: State, pair: Pair, k: int, now: int) -> None:
     front[0], front[2] = min(front[0], max(i - 2, 2)), max(front[2], min(i + 2, grid.last))
     samples = extra.samples[k]
     if samples.shape[1] > 0:
-        last, here = (before, 0.0, 0.0, 0.0, 0.0), (F, 0.0, 0.0, 0.0, 0.0)
-        fill_samples(samples, step, extra.steps, last, here)
+        start, end = (before, 0.0, 0.0, 0.0, 0.0), (F, 0.0, 0.0, 0.0, 0.0)
+        fill_samples(samples, step, extra.steps, start, end)
 
 
 @inlined
