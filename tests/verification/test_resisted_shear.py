@@ -131,7 +131,7 @@ def test_frequencies_converge_at_second_order_to_the_characteristic_equation(val
     ids=["mass", "stiffness", "all"],
 )
 def test_free_vibration_has_the_logarithmic_decrement(values):
-    """Of two modes of the grid, sines of w and psi: zeta = alpha/(2 omega) + beta omega/2."""
+    """Two modes of the grid are sines of w and psi with zeta = alpha/(2 omega) + beta omega/2."""
     impact, n = beam_of(**values), np.array([1, 3])
     case = case_table(impact, il.Discretisation(), duration=1e-3)[0]
     EI, kGA, beam = fibre_section(case).stiffness, case.shear_stiffness, impact.beam
@@ -165,7 +165,7 @@ def test_free_vibration_has_the_logarithmic_decrement(values):
     ids=["springs", "cantilever", "pinned", "elastic"],
 )
 def test_the_balance_of_energy_counts_springs_foundation_and_damping(values, load, velocity):
-    """Within a tenth of the law's own error of time steps, though damping takes much."""
+    """The error is no more than that of an undamped run, though damping takes much."""
     grid, place = il.Discretisation(nodes=65, points=9), 0.5 if load == "point" else 0.25
     runs = [
         il.simulate(
@@ -188,7 +188,7 @@ def test_the_balance_of_energy_counts_springs_foundation_and_damping(values, loa
 )
 @pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning")
 def test_a_sphere_at_rest_bends_the_beam_as_in_statics(values):
-    """By w = m g times the closed form's flexibility, shear included, once damping has its way."""
+    """Once damping has its way, w = m g times the closed form's flexibility, shear included."""
     impact = beam_of(1e-3, radius=0.035, mass_damping=1500.0, **values)
     impact = replace(impact, gravity=50.0)
     run = il.simulate(impact, il.Discretisation(nodes=41), duration=0.05, samples=2001)
@@ -207,7 +207,7 @@ def test_a_sphere_at_rest_bends_the_beam_as_in_statics(values):
 @pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning")
 @pytest.mark.parametrize("values", [SPRINGS | RAYLEIGH | BED, SPRINGS, RAYLEIGH, BED])
 def test_a_slender_beam_moves_as_euler_bernoullis(values):
-    """Under a soft sphere, whose contact is as long as the beam swings."""
+    """The sphere is soft, so that the contact is as long as the beam swings."""
     histories = []
     for model in ("euler_bernoulli", "timoshenko"):
         impact = beam_of(0.05, model, 0.035, depth=6e-3, width=0.6, **values)

@@ -191,7 +191,7 @@ def test_rest_has_the_least_elastic_energy(impact, scheme, ends, place, bed):
     expected = at_rest(impact, grid, run.plastic_strain.values)
     largest = np.abs(expected).max()
     assert largest > 2e-4
-    bound = 1e-7 if scheme == "leapfrog" else 0.02  # of modes left out, at hinges
+    bound = 1e-7 if scheme == "leapfrog" else 0.02 if bed == 0.0 else 0.04  # of modes left out
     assert run.deflection.values == pytest.approx(expected, abs=bound * largest)
     under = expected[round(40 * place)]
     dents = series(run, "residual_deflection")
