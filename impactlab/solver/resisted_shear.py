@@ -123,14 +123,14 @@ def _resist(
     w, u, du, after, h = beam.w, beam.u, beam.du, 1 - now, resistance.h
     start, stop = _moving(grid)
     for i in range(np.uint64(start), np.uint64(stop)):
-        taken = resistance.drag[i] + resistance.bed * w[now, i] + h * (2.0 * u[i] - du[i])
-        change = -taken / (1.0 + h)
+        loss = resistance.drag[i] + resistance.bed * w[now, i] + h * (2.0 * u[i] - du[i])
+        change = -loss / (1.0 + h)
         u[i] += change
         du[i] += change
         w[after, i] += change
     for i in range(np.uint64(grid.first - 1), np.uint64(grid.stop)):
-        taken = resistance.twist[i] + h * (2.0 * shear.spin[i] - shear.d_spin[i])
-        change = -taken / (1.0 + h)
+        loss = resistance.twist[i] + h * (2.0 * shear.spin[i] - shear.d_spin[i])
+        change = -loss / (1.0 + h)
         shear.spin[i] += change
         shear.d_spin[i] += change
         shear.psi[i] += change
