@@ -175,3 +175,22 @@ def test_where_the_beam_is_struck_changes_its_kinked_contact_little():
         assert float(left[name]) == pytest.approx(float(middle[name]), rel=1e-3)
         assert float(held[name]) == pytest.approx(float(middle[name]), rel=1e-2)
         assert float(held[name]) != pytest.approx(float(middle[name]), rel=1e-3)
+
+
+@pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+def test_a_foundation_holds_the_kink():
+    """Too soft a one to be felt during the contact: what is missing is the kink alone."""
+    base = replace(il.corrected_impact(5.0), contact_compliance="beam")
+    soft = replace(base, beam=replace(base.beam, foundation_stiffness=1e3))
+    grid = il.Discretisation(nodes=41)
+    free, bedded, held = (
+        il.simulate(impact, grid, duration="0.3 ms")
+        for impact in (
+            base,
+            soft,
+            replace(base, beam=replace(base.beam, support_left="clamped", support_right="clamped")),
+        )
+    )
+    assert bedded.energy_error < 3e-4
+    assert float(bedded.peak_force) == pytest.approx(float(held.peak_force), rel=1e-4)
+    assert float(bedded.peak_force) != pytest.approx(float(free.peak_force), rel=1e-3)
