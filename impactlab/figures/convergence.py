@@ -344,6 +344,7 @@ def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     held = (end.isin(AXIAL_SUPPORTS) for end in ends)
     given |= dict(zip(("axis_held_left", "axis_held_right"), held, strict=True))
     others |= {"stiffness_damping": 0.0, "foundation_stiffness": 0.0, "strikes": 1}
+    others |= {"strike_interval": 0.0, "further": 0}
     others |= {
         f"{kind}stiffness_{side}": 0.0 for kind in ("", "rotational_") for side in ("left", "right")
     }

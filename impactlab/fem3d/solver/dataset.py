@@ -124,7 +124,7 @@ IMPACT_PARAMETERS = [
     for name, entry in PARAMETERS.items()
     if entry.path[0] == "impact"
     and name not in ("contact", *TIMOSHENKO_OPTIONS, "beam_model", "load", "shear_coefficient")
-    and name not in (*SECTION, *RESISTANCES)
+    and name not in (*SECTION, *RESISTANCES, "strike_interval", "further_spheres")
     and "stiffness_" not in name
 ]
 """Parameters of an impact, without those of the beam models alone."""

@@ -22,7 +22,7 @@ import xarray as xr
 
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
-from impactlab.model.parameters import PARAMETERS, SECTION, with_values
+from impactlab.model.parameters import PARAMETERS, SECTION, WORDS, with_values
 from impactlab.model.section import section_values
 from impactlab.simulate import run_dataset
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy
@@ -242,8 +242,10 @@ def _responses(task: Task, cases: Array, output: OutputSpec) -> Columns:
         values = {
             name: entry.choices[case[name]] if entry.choices else case[name].item()
             for name, entry in PARAMETERS.items()
-            if name in (cases.dtype.names or ()) and name not in SECTION
+            if name in (cases.dtype.names or ()) and name not in (*SECTION, *WORDS)
         } | section_values(case)
+        values["strike_interval"] = values["strike_interval"] or None
+        values["further_spheres"] = case["further_spheres"][: case["further"]].tolist() or None
         impact, grid = with_values(paper_impact(), Discretisation(), values)
         with warnings.catch_warnings():  # told before
             warnings.simplefilter("ignore")

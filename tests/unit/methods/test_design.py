@@ -58,6 +58,7 @@ def test_a_grid_has_a_dimension_for_each_varied_parameter_and_scalars(designed):
     assert not grid.data_vars
     scalars = {name for name, coordinate in grid.coords.items() if coordinate.ndim == 0}
     absent = {"rule", "velocity", "sphere_mass", *SIZES, *SECTION} - {"beam_shape"}
+    absent |= {"strike_interval", "further_spheres"}
     assert scalars == PARAMETERS.keys() - absent | {"duration"}
     assert grid["nodes"].item() == 51
     assert grid["duration"].item() == 0.012

@@ -36,4 +36,5 @@ def test_compiling_all_leaves_no_kernel_out(monkeypatch):
     monkeypatch.setitem(compile_kernels.__globals__, "precompile", programs.update)
     compile_kernels()
     kinds = itertools.product(range(len(BEAM_MODELS)), range(len(SCHEMES)), (False, True))
-    assert set(programs) == {kernel_of(*kind) for kind in kinds}
+    several = kernel_of(0, 0, several=True)
+    assert set(programs) == {*map(kernel_of, *zip(*kinds, strict=True)), several}
