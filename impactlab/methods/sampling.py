@@ -23,7 +23,7 @@ from pydantic import (
 from impactlab.methods.distributions import CHOICE, DISTRIBUTIONS, ENTRIES, Choice, Entry, Fixed
 from impactlab.methods.record import Indices
 from impactlab.methods.runs import Sample
-from impactlab.model.parameters import PROFILE_FIXED, Parameter, Value
+from impactlab.model.parameters import PROFILE_FIXED, SPHERES_FIXED, Parameter, Value
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown
 from impactlab.validation.fields import LABEL, Names, Whole, at_key, by_name, name_at
@@ -39,9 +39,9 @@ _EDGE = 2.0**-31
 infinite."""
 
 
-def _refuse_profile(data: Any, info: ValidationInfo) -> Any:
-    """Raise ValueError: the profile of a section is no factor."""
-    raise ValueError(PROFILE_FIXED)
+def _refuse_list(parameter: Parameter, data: Any, info: ValidationInfo) -> Any:
+    """Raise ValueError: a list, as the profile of a section, is no factor."""
+    raise ValueError(SPHERES_FIXED if parameter.name == "further_spheres" else PROFILE_FIXED)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,7 +118,7 @@ class Sampling(Stated):
             name: Annotated[
                 Any,
                 PlainValidator(
-                    _refuse_profile
+                    partial(_refuse_list, parameter)
                     if parameter.any_word and parameter.path
                     else partial(cls.read_entry, parameter)
                 ),

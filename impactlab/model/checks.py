@@ -88,7 +88,7 @@ def one_of(owner: str, field: str, value: Any, choices: tuple[str, ...]) -> str:
 
 
 def among(value: Any, choices: Collection[str]) -> Any:
-    """Return whether a word, or each of a column, is one of these."""
+    """Return whether a word is one of these, for every word of a column."""
     return np.isin(value, [*choices]) if isinstance(value, Column) else value in choices
 
 

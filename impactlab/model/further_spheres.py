@@ -19,6 +19,8 @@ LEAPFROG_ALONE = (
     "must be left out with scheme: modal, which has one sphere: change it, or set scheme: leapfrog"
 )
 """Why the modal scheme has none."""
+PLACE_OF_ITS_OWN = "must have a place of its own each: strikes and strike_interval repeat a strike"
+"""Why two spheres cannot strike one node."""
 VISCOUS = "must be left out with a viscous contact law, which has one sphere: change either"
 """Why laws with damping have none."""
 
@@ -32,11 +34,13 @@ def sphere_rows(spheres: Any) -> tuple[tuple[float, ...], ...]:
         spheres = [[float(word) for word in row.split()] for row in spheres.split(",")]
     rows = []
     for sphere in spheres:
+        if not isinstance(sphere, Mapping) and len(sphere) != len(_UNITS):
+            raise ValueError(f"a row needs {len(_UNITS)} numbers: {', '.join(_UNITS)}")
         row = {"delay": 0.0} | dict(
             sphere if isinstance(sphere, Mapping) else zip(_UNITS, sphere, strict=True)
         )
-        if row.keys() != _UNITS.keys():
-            raise ValueError("other keys")
+        if other := row.keys() ^ _UNITS.keys():
+            raise ValueError(f"other keys: {', '.join(map(str, other))}")
         rows.append(tuple(si(row[name], units) for name, units in _UNITS.items()))
     return tuple(rows)
 
@@ -68,8 +72,7 @@ def spheres_text(impact: Any) -> str | None:
         require((0.0 < place < 1.0) | on_end, *field, message)
     places = [place for place, _, _ in rows]
     lone = len(set(places)) == len(places) and not np.isin(impact.strike_position, places).any()
-    message = "must have a place of its own each: strikes and strike_interval repeat a strike"
-    require(lone, *field, message)
+    require(lone, *field, PLACE_OF_ITS_OWN)
     beam, end = impact.beam, "with further_spheres: change it, or leave them out"
     needs: tuple[tuple[str, str, Any, Any, str], ...] = (
         ("Impact", "beam_model", impact, BENDING_MODELS, " or ".join(BENDING_MODELS)),

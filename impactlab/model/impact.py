@@ -105,8 +105,8 @@ class Impact:
         before each (solver/settle.py) unless `strike_interval` is stated: plastic strains and dent
         are carried over. Responses are those of the last strike, but that dents, plastic strains
         and dissipated energies are what all of them have left, and deflections count from the axis
-        before the first. More than one
-        need ends that hold the beam, and none is for "solid".
+        before the first. More than one need ends or a foundation that hold the beam, and another
+        beam model than "solid" and "von_karman".
     strike_interval : Quantity, optional
         Time from one strike to the next, in s, between which the beam goes on moving; at least the
         duration, after which the sphere of the strike before is taken away. By default the beam
@@ -116,8 +116,8 @@ class Impact:
         its `velocity`, and its `delay` (by default 0), the time from the first sphere's touch to
         its own; or rows of these in SI. Scalar responses are those of the first sphere. They need
         the beam models "euler_bernoulli" or "elastic" and the scheme "leapfrog", one strike, a
-        point load and neither damping, foundation nor strain rate (solver/several_spheres.py). Kept
-        as text, "0.25 3.0 0.0005".
+        point load, a contact law without damping, and neither damping, foundation nor strain rate
+        (solver/several_spheres.py). Kept as text, "0.25 3.0 0.0005".
 
     Raises
     ------

@@ -215,7 +215,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     those of all runs are the caller's, who holds them until this returns.
     """
     make, renew, take, deflect = model.make, model.renew, model.take, model.deflect
-    join, read = (None, None) if model.further is None else model.further
+    join, read = (None, None) if model.further is None else model.further[:2]
     divide = _division(join is not None)
     run = _run(model, extended)
     make_section_room, cut = model.section or (

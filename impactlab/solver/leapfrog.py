@@ -160,6 +160,7 @@ def _take_away(
 def _audit(model: BeamModel) -> Callable[..., float]:
     """Return the audit of the energy of a model of the beam."""
     beam_energy, fast = model.energy, model.flight is not None
+    brought = None if model.further is None else model.further.brought
 
     @inlined
     def imbalance(
@@ -173,7 +174,7 @@ def _audit(model: BeamModel) -> Callable[..., float]:
         excess: float,
         at_touch: float,
     ) -> float:
-        """Return the energy missing or in excess, over the initial kinetic energy.
+        """Return the energy missing or in excess, over the kinetic energy of spheres that touched.
 
         After a step, of its beginning. sphere: its displacement (m), velocity before and after the
         step (m/s), approach (m). u_mid (m): u at mid-span before the step. excess (J): see
@@ -184,7 +185,8 @@ def _audit(model: BeamModel) -> Callable[..., float]:
         falling = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
         in_beam = beam_energy(state, now, F, u_mid) + excess
         kept, lost = contact_history.energies(contact, state.pair, approach, fast)
-        return abs(falling + in_beam + kept + lost - (start + at_touch)) / start
+        missing = abs(falling + in_beam + kept + lost - (start + at_touch))
+        return missing / start if brought is None else missing / (start + brought(state))
 
     return imbalance
 

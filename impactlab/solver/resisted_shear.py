@@ -22,7 +22,7 @@ from impactlab.solver.types import ONE, Array, Record
 
 
 class ShearResistance(NamedTuple):
-    """What resists a Timoshenko beam; all arrays (last + 3,).
+    """Damping and foundation of a Timoshenko beam; all arrays (last + 3,).
 
     drag (m), twist (rad): what the stiffness's damping takes from u and spin in a step. Q (N), M (N
     m): shear force and moment of the last steps of w and psi. lost, h, lag, bed and acts as in

@@ -199,6 +199,14 @@ def _energy(state: State, now: int, F: float, u_mid: float) -> float:
 
 
 @compiled
+def _brought(state: State) -> float:
+    motions, squares = state.extra.motions, 0.0
+    for k in range(motions.size):
+        squares += motions[k].begun * motions[k].velocity ** 2
+    return float(0.5 * state.extra.mass * squares)
+
+
+@compiled
 def _read(state: State, case: Record, answer: Record, answers: Array) -> None:
     """Fill in the answers of the further spheres; remark in the run's what they add."""
     extra, pair, grid = state.extra, state.pair, state.grid
@@ -224,5 +232,5 @@ MODEL = BeamModel(
     euler_bernoulli.deflected,
     _PLAIN.spread,
     settle=None,
-    further=FurtherSpheres(_join, _read),
+    further=FurtherSpheres(_join, _read, _brought),
 )

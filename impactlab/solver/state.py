@@ -45,11 +45,13 @@ class FurtherSpheres(NamedTuple):
     """Compiled functions of a model that moves further spheres with the beam.
 
     join(state, table, r, case): State.extra of run r with them, from a table made outside. read(
-    state, case, answer, answers): fill in their answers, and what they add to the run's.
+    state, case, answer, answers): fill in their answers, and what they add to the run's. brought(
+    state): the kinetic energy (J) with which those came that have touched the beam.
     """
 
     join: Callable[..., Any]
     read: Callable[..., None]
+    brought: Callable[..., float]
 
 
 class BeamModel(NamedTuple):

@@ -76,6 +76,17 @@ def test_energy_is_balanced_over_all_spheres():
     assert 4.0 * errors[1] < errors[0] < 3e-3
 
 
+def test_spheres_exchange_their_roles():
+    """However little energy the first one brings: the audit is over that of all."""
+    slow = replace(PAPER, velocity=0.05, further_spheres="0.75 10 0")
+    fast = replace(PAPER, velocity=10.0, strike_position=0.75, further_spheres="0.25 0.05 0")
+    runs = [il.simulate(impact, GRID, duration="1 ms", samples=51) for impact in (slow, fast)]
+    forces = [run.contact_force_of_spheres.values for run in runs]
+    assert forces[0].max(axis=1).min() > 1e4
+    assert forces[0][::-1] == pytest.approx(forces[1], rel=1e-9)
+    assert runs[0].energy_error.item() == pytest.approx(runs[1].energy_error.item(), rel=1e-6)
+
+
 @pytest.mark.parametrize("model", ["elastic", "euler_bernoulli"])
 def test_blows_superpose(model):
     """The modal series of an elastic beam under both forces; the second does as it does alone."""
@@ -112,6 +123,11 @@ def test_blows_superpose(model):
         ({"scheme": "modal"}, "^further_spheres: must be left out with scheme: modal"),
         ({"further_spheres": "0.33 1 0"}, "^further_spheres: lies between two of the 41 nodes"),
         ({"further_spheres": "0.25 1 0"}, "must have a place of its own each: strikes and"),
+        (
+            {"further_spheres": "0.25000000001 1 0"},
+            "^further_spheres: must have a place of its own",
+        ),
+        ({"further_spheres": "0.75 1"}, r"a row needs 3 numbers: strike_position, velocity, delay"),
         ({"further_spheres": "1 1 0"}, "must have places above 0 and below 1 of the span, or at a"),
         ({"further_spheres": [{"velocity": 1}]}, r"must be a list of spheres, 1 to 8, as \[\{str"),
     ],

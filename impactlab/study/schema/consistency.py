@@ -14,8 +14,9 @@ from impactlab.methods.distributions import Choice, Distribution
 from impactlab.methods.grid import Grid
 from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
-from impactlab.model.case_table import MODAL_DAMPING, between_nodes
+from impactlab.model.case_table import MODAL_DAMPING, TOO_SOON, between_nodes
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
+from impactlab.model.further_spheres import LEAPFROG_ALONE, sphere_rows
 from impactlab.model.impact import (
     HINGES,
     MID_SPAN,
@@ -191,6 +192,7 @@ def _impacts(file: StudyFile) -> Reasons:
         yield key_of("scheme", sampling), reason
     yield from _other_beams(file, set(models))
     yield from _resisted_beams(file, ends)
+    yield from _several_strikes(file, ends)
     lumped = [name for name in LUMPED_MODELS if name in models]
     if lumped and "contact_patch" in values_of(sampling, "load", file.impact.load):
         reason = f"contact_patch is not for {lumped[0]}, which moves as one mass: set load: point"
@@ -243,6 +245,26 @@ def _resisted_beams(file: StudyFile, ends: Extremes) -> Reasons:
         yield key_of("damping_ratio", sampling), MODAL_DAMPING
 
 
+def _several_strikes(file: StudyFile, ends: Extremes) -> Reasons:
+    """Check that strikes wait for those before, and that further spheres have node and scheme."""
+    sampling, grid = file.sampling, file.discretisation[0]
+    interval = ends.get("strike_interval", (file.duration,))[0]
+    if ends["strikes"][1] > 1 and interval < file.duration:
+        value = shown("strike_interval", interval, "s")
+        yield key_of("strike_interval", sampling), f"{value} {TOO_SOON}"
+    spheres, key = sphere_rows(file.impact.further_spheres or ()), "impact.further_spheres"
+    if spheres and file.discretisation[1] is not None:
+        yield "discretisation.auto", "needs one sphere: state the discretisation"
+        return
+    for place, _, _ in spheres:
+        for nodes in map(int, values_of(sampling, "nodes", grid.nodes)):
+            if reason := between_nodes(place, nodes):
+                yield key, f"{place:g} {reason}"
+                return
+    if spheres and "modal" in values_of(sampling, "scheme", grid.scheme):
+        yield key, LEAPFROG_ALONE
+
+
 def _further_models(file: StudyFile) -> Reasons:
     """Check runs of a wing's model as the wing does; without any, its sizes have no effect."""
     for model in wings.models().values():
@@ -268,7 +290,7 @@ CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (
     (limit_reasons, {"limits", "responses", "analyses", "sampling"}),
     (_automatic_discretisation, {"discretisation", "responses", "sampling"}),
     (_indices_to_grow_by, {"analyses", "responses", "sampling"}),
-    (_impacts, {"impact", "discretisation", "sampling"}),
+    (_impacts, {"impact", "discretisation", "sampling", "duration"}),
     (_further_models, {"impact", "discretisation", "sampling", "responses", "store"}),
 )
 """The checks, and the sections that each reads: without errors of their own, or it is left out."""

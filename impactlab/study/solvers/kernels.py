@@ -33,6 +33,9 @@ from impactlab.variables import (
 
 _OF_ANY_RUN = 6000.0  # cost of a run beside its node-steps: about 20 µs
 
+_BESIDE_SPHERES = ("strike_position", "support_left", "support_right")
+"""What may be at odds with further spheres."""
+
 
 def columns(design: xr.Dataset) -> tuple[str, ...]:
     """Return the names of the requested responses, their flags, and histories and profiles kept."""
@@ -76,9 +79,11 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
 def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
     """Return the impact and the discretisation without what is varied.
 
-    A section has the sizes of the first run, without which it may be none.
+    A section has the sizes of the first run, without which it may be none, and further spheres have
+    its place of the strike and its supports, with which they may not be at odds.
     """
-    varied = {name for name in listed(design, "varied") if name not in SECTION}
+    kept = (*SECTION, *(_BESIDE_SPHERES if "further_spheres" in design.variables else ()))
+    varied = {name for name in listed(design, "varied") if name not in kept}
     variables = design.variables  # quicker to get than arrays with labels
     stated = [name for name in PARAMETERS if name in variables and name not in varied]
     fixed = {name: variables[name].values.flat[0].item() for name in stated}

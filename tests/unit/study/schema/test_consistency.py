@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from impactlab.analysis import ANALYSES
@@ -10,6 +11,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import flatten
 from impactlab.study.design import design
+from impactlab.study.solvers.kernels import SOLVER
 
 
 def test_more_runs_than_possible_are_refused(refused, grid, sample):
@@ -231,3 +233,40 @@ def test_corners_are_those_of_every_word(read, grid):
     varied = {"contact": laws, "velocity": [2, 1, 3]}
     bounds = read(grid({"sampling.parameters": varied})).sampling.bounds()
     assert bounds == {"contact": tuple(laws), "velocity": (1, 3)}
+
+
+FURTHER = {"impact.strike_position": 0.25, "impact.further_spheres": "0.5 1 0"}
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "said"),
+    [
+        ({"impact.strike_interval": "1 ms", "impact.strikes": 2}, "impact.strike_interval", "1 ms"),
+        (
+            {"sampling.parameters": {"strike_interval": ["20 ms", "1 ms"], "strikes": [1, 2]}},
+            "sampling.parameters.strike_interval",
+            "must be at least the duration",
+        ),
+        (
+            FURTHER | {"discretisation.nodes": 41, "impact.further_spheres": "0.33 1 0"},
+            "impact.further_spheres",
+            "0.33 lies between",
+        ),
+        (FURTHER | {"discretisation.scheme": "modal"}, "impact.further_spheres", "left out with"),
+        (FURTHER | {"discretisation": "auto"}, "discretisation.auto", "needs one sphere"),
+        (
+            FURTHER | {"sampling.parameters": {"further_spheres": ["0.5 1 0"]}},
+            "sampling.parameters.further_spheres",
+            "vary velocity and strike_position",
+        ),
+    ],
+)
+def test_strikes_and_spheres_at_odds_are_told_at_their_key(problems, grid, changes, key, said):
+    assert said in dict(problems(grid(changes)))[key]
+
+
+def test_a_place_varies_beside_a_further_sphere_in_the_middle(read, grid):
+    """Without what is varied the first sphere would strike the middle, too."""
+    places = {"sampling.parameters": {"strike_position": [0.25, 0.1]}, "discretisation.nodes": 41}
+    cases = SOLVER.cases(design(read(grid(FURTHER | places))), np.arange(2))
+    assert cases["strike_position"].tolist() == [0.25, 0.1]

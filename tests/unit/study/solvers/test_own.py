@@ -1,5 +1,7 @@
 """Functions of the user: solved, kept and analysed like ours, and never taken for one another."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -82,6 +84,22 @@ def peak(run):
 
 
 PEAK = il.Function(peak)
+
+
+@pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+@pytest.mark.parametrize(
+    "changes",
+    [{"strikes": 2, "strike_interval": "1.5 ms"}, {"further_spheres": "0.25 3 0.0001, 0.75 1 0"}],
+)
+def test_a_response_of_ones_own_is_that_of_all_strikes_and_spheres(changes):
+    impact = replace(il.paper_impact(5.0), **changes)
+    grid = il.Discretisation(nodes=21, points=3)
+    given = {"momentum": MOMENTUM, "impulse": "impulse"}
+    sampling = il.Grid(parameters={"velocity": [4.0, 5.0]})
+    runs = impacts(impact=impact, responses=given, sampling=sampling).run(workers=1)
+    alone = il.simulate(impact, grid, duration="1 ms", samples=2)
+    assert runs.momentum.values.tolist() == runs.impulse.values.tolist()
+    assert runs.momentum.values[1] == alone.impulse.item()
 
 
 def test_the_discretisation_is_found_for_own_responses_as_for_ours():
