@@ -39,8 +39,8 @@ def sphere_rows(spheres: Any) -> tuple[tuple[float, ...], ...]:
         row = {"delay": 0.0} | dict(
             sphere if isinstance(sphere, Mapping) else zip(_UNITS, sphere, strict=True)
         )
-        if other := row.keys() ^ _UNITS.keys():
-            raise ValueError(f"other keys: {', '.join(map(str, other))}")
+        if differing := row.keys() ^ _UNITS.keys():
+            raise ValueError(f"other keys: {', '.join(map(str, differing))}")
         rows.append(tuple(si(row[name], units) for name, units in _UNITS.items()))
     return tuple(rows)
 

@@ -82,8 +82,11 @@ def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
     A section has the sizes of the first run, without which it may be none, and further spheres have
     its place of the strike and its supports, with which they may not be at odds.
     """
-    kept = (*SECTION, *(_BESIDE_SPHERES if "further_spheres" in design.variables else ()))
-    varied = {name for name in listed(design, "varied") if name not in kept}
+    stated_by_first = (
+        *SECTION,
+        *(_BESIDE_SPHERES if "further_spheres" in design.variables else ()),
+    )
+    varied = {name for name in listed(design, "varied") if name not in stated_by_first}
     variables = design.variables  # quicker to get than arrays with labels
     stated = [name for name in PARAMETERS if name in variables and name not in varied]
     fixed = {name: variables[name].values.flat[0].item() for name in stated}
