@@ -283,10 +283,11 @@ def finish(
 
 
 def _columns(width: float, labels: list[str]) -> int:
-    """Return the columns that fit into a width in mm; letters are up to 1.45 mm wide at 7 pt."""
+    """Return the columns, evenly filled, that fit a width in mm; letters take 1.45 mm at 7 pt."""
     longest = max((len(label) for label in labels), default=1)
-    fit = int(width / (1.45 * longest + 15.5))
-    return max(1, min(fit, len(labels)))
+    fit = max(1, int(width / (1.45 * longest + 15.5)))
+    rows = math.ceil(len(labels) / fit)
+    return max(1, math.ceil(len(labels) / max(rows, 1)))
 
 
 def distinct(number: int) -> dict[str, Any]:
