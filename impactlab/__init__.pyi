@@ -15,7 +15,7 @@ from .methods.distributions import TruncatedNormal as TruncatedNormal
 from .methods.distributions import Uniform as Uniform
 from .methods.fast import Fast as Fast
 from .methods.grid import Grid as Grid
-from .methods.hypercube import Latin as Latin
+from .methods.latin import Latin as Latin
 from .methods.morris import Morris as Morris
 from .methods.pawn import Pawn as Pawn
 from .methods.rbd_fast import RbdFast as RbdFast

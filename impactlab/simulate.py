@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from impactlab.duration import too_short
 from impactlab.model.case_table import case_table
 from impactlab.model.checks import instance, integer, positive
 from impactlab.model.discretisation import Discretisation
@@ -22,7 +23,7 @@ from impactlab.model.plausibility import (
 )
 from impactlab.model.quantities import Quantity, as_text, in_si
 from impactlab.model.quantities import duration as duration_of
-from impactlab.solve import fibre_section, profile_coordinates, solve, too_short
+from impactlab.solve import fibre_section, profile_coordinates, solve
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.stability import discretise
 from impactlab.variables import (

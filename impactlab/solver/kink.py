@@ -20,8 +20,9 @@ The kink needs no stress where both ends are pinned: a beam of two straight part
 left one turns by theta (L - x_0)/L. So the kernels hold the deflection beyond that, which is
 `w + theta (L - x_0)/L x` up to the struck section at x_0; all moments are as they were, and the
 velocity is that of the beam. Against the moment M there the kink takes the work M d theta from the
-contact. Other ends, and a foundation, would hold it: there the kink is left out. It makes 0.5 % of
-the force of a first contact.
+contact. Other ends, and a foundation, would hold it: there the kink is left out. It changes
+force, duration and indentations of a first contact by 0.6 % at most (three beams, 0.99 to 20 m/s);
+what a held kink does to the deflection after it has not been compared with 3-D.
 """
 
 from __future__ import annotations
