@@ -190,7 +190,8 @@ def test_rest_has_the_least_elastic_energy(impact, scheme, ends, place, bed):
     run = il.simulate(replace(impact, strikes=2), grid, duration="25 ms", samples=2)
     expected = at_rest(impact, grid, run.plastic_strain.values)
     largest = np.abs(expected).max()
-    assert largest > (1e-3 if bed == 0.0 else 2e-4)
+    softer = bed == 0.0 and ends != ("elastic", "elastic")
+    assert largest > (1e-3 if softer else 2e-4)
     bound = 1e-7 if scheme == "leapfrog" else 0.02 if bed == 0.0 else 0.04  # of modes left out
     assert run.deflection.values == pytest.approx(expected, abs=bound * largest)
     under = expected[round(40 * place)]
