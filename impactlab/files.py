@@ -262,7 +262,7 @@ def read_netcdf(path: Path, *contents: str) -> xr.Dataset:
 def checked(path: Path, *contents: str, blocks: bool = False) -> Iterator[xr.Dataset]:
     """Give a dataset whose file is open; it was read once, in blocks, to check it.
 
-    Its values are read each time that they are used, and `run` has no index: memory need not hold
+    Its arrays are read each time that they are used, and `run` has no index: memory need not hold
     all variables. blocks: large histories and profiles are arrays of dask, of which memory need
     not hold any whole. Raises as `read_netcdf` does.
     """
@@ -271,6 +271,9 @@ def checked(path: Path, *contents: str, blocks: bool = False) -> Iterator[xr.Dat
         for dim in map(str, lazy.dims):
             if dim in lazy.coords and dim != "run":
                 lazy = lazy.set_xindex(dim)
+        for scalar in lazy.variables.values():
+            if not scalar.ndim:  # arithmetic compares scalar coordinates again and again
+                scalar.load()
         large = [v for v in lazy.values() if v.ndim > 1 and v.size > _BLOCK]
         if not (blocks and large):
             yield lazy

@@ -92,9 +92,20 @@ def count(runs: xr.Dataset) -> int:
 
 def usable(runs: xr.Dataset, name: str) -> xr.DataArray:
     """Return a variable of the runs, NaN where the run's status says that it does not hold."""
+    array = runs[name]
     if "status" not in runs:
-        return runs[name]
-    return runs[name].where((runs["status"] & status_bits([name])) == 0).rename(name)
+        return array
+    # variables have no coordinates, which arithmetic would compare, some forty of them
+    holds = (runs["status"].variable & status_bits([name])) == 0
+    usable: xr.DataArray = array.copy(
+        deep=False, data=array.variable.where(holds).transpose(*array.dims).data
+    )
+    return usable
+
+
+def bare(array: xr.DataArray) -> xr.DataArray:
+    """Return an array without coordinates that are no axis: arithmetic compares each of them."""
+    return array.reset_coords(drop=True)
 
 
 def means_by_word(
@@ -119,7 +130,7 @@ def means_by_word(
 
 def absent(runs: xr.Dataset, name: str) -> xr.DataArray:
     """Return True for each run (design dimensions) in which a variable has no finite value."""
-    array = usable(runs, name)
+    array = bare(usable(runs, name))
     present: xr.DataArray = xr.apply_ufunc(np.isfinite, array, dask="allowed")
     return ~present.any([*set(array.dims) - {*design_dims(runs, array.dims)}])
 
@@ -128,7 +139,7 @@ def failed(runs: xr.Dataset) -> xr.DataArray:
     """Return True, on the design dimensions, where a run failed or lacks a response."""
     marks = [absent(runs, name) for name in responses(runs)]
     if "status" in runs:
-        marks.append((runs["status"] & FAILED) != 0)
+        marks.append((bare(runs["status"]) & FAILED) != 0)
     return reduce(or_, marks, xr.DataArray(False))
 
 

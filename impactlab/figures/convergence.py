@@ -228,11 +228,11 @@ def _relative_difference(
     runs: xr.Dataset, analysis: xr.Dataset, axis: Refined, name: str
 ) -> xr.DataArray:
     """Return |f - f0|/|f0| on (axis, ...), NaN where the limit f0 is 0."""
-    values = usable(runs, name)
+    values = access.bare(usable(runs, name))
     finest = REFINEMENTS[axis.dim].finest_first(runs[axis.dim].values)[0]
     reference = values.isel({axis.dim: int(finest)}, drop=True)  # without a limit
     for kind in ("fit_extrapolated", "extrapolated"):
-        limit = _of(analysis, f"{axis.name}_{kind}", name)
+        limit = access.bare(_of(analysis, f"{axis.name}_{kind}", name))
         reference = limit.where(np.isfinite(limit), reference)
     ratio = abs(values - reference) / abs(reference).where(reference != 0)
     return ratio.where((values != 0) | (reference != 0), 0.0).transpose(axis.dim, ...)

@@ -19,6 +19,7 @@ from matplotlib.figure import Figure
 
 from impactlab.figures import animation, data, findings, labels, record, style
 from impactlab.figures.catalogue import applicable
+from impactlab.figures.needs import judged_once
 from impactlab.files import identity, replaced
 from impactlab.verification.finding import gravest_first
 from impactlab.verification.outcomes import unpacked
@@ -75,6 +76,7 @@ def draw_findings(
     return (write or draw)(drawings, folder, study, made_from=stored)
 
 
+@judged_once()
 def draw(
     drawings: Iterable[Drawing], folder: Path, study: str, made_from: xr.Dataset | None = None
 ) -> list[Path]:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from itertools import product
 from typing import NamedTuple
 
@@ -87,8 +90,32 @@ _WORDS = {
 }
 
 
+_Judgements = dict[tuple[int, int], tuple["Needs | None", xr.Dataset, xr.Dataset]]
+_judgements: ContextVar[_Judgements | None] = ContextVar("judgements", default=None)
+
+
+@contextmanager
+def judged_once() -> Iterator[None]:
+    """Judge each pair of datasets once in this context, in which they must not change."""
+    token = _judgements.set({})
+    try:
+        yield
+    finally:
+        _judgements.reset(token)
+
+
 def needed(runs: xr.Dataset, analysis: xr.Dataset) -> Needs | None:
     """Return the grids that a study needs, None where no axis was judged."""
+    judgements = _judgements.get()
+    if judgements is None:
+        return _judged(runs, analysis)
+    pair = id(runs), id(analysis)
+    if pair not in judgements:  # the datasets stay in memory, for no other to have their id
+        judgements[pair] = _judged(runs, analysis), runs, analysis
+    return judgements[pair][0]
+
+
+def _judged(runs: xr.Dataset, analysis: xr.Dataset) -> Needs | None:
     if of_function(runs):
         return None
     axes = []
@@ -111,11 +138,13 @@ def needed(runs: xr.Dataset, analysis: xr.Dataset) -> Needs | None:
 
 
 def _least(runs: xr.Dataset, analysis: xr.Dataset, axes: list[str]) -> Needs:
-    cost = xr.ones_like(runs[axes[0]], float)
+    cost = access.bare(xr.ones_like(runs[axes[0]], float))
     for dim in axes:
-        cost = cost * runs[dim].astype(float) ** REFINEMENTS[dim].cost_power
+        cost = cost * access.bare(runs[dim]).astype(float) ** REFINEMENTS[dim].cost_power
     names = analysis["response"].values.tolist()
-    values = xr.Dataset({name: usable(runs, name) for name in names}).to_array("response")
+    values = xr.Dataset({name: access.bare(usable(runs, name)) for name in names}).to_array(
+        "response"
+    )
     limit = values.isel(dict.fromkeys(axes, 0))
     error = abs(values - limit) / abs(limit)
     judged = analysis.map(finest, keep_attrs=True, runs=runs)

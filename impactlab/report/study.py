@@ -14,6 +14,7 @@ from impactlab.figures import access, labels
 from impactlab.figures.access import count, design_dims, is_sample, names, responses, usable, varied
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
+from impactlab.figures.needs import judged_once
 from impactlab.figures.samples import scatter
 from impactlab.methods import NO_DISTRIBUTION
 from impactlab.methods.distributions import distribution_of
@@ -41,6 +42,7 @@ def counts(runs: xr.Dataset) -> tuple[str, str]:
     return f"{labels.counted(count(runs), 'run')} ({method})", endings(runs)
 
 
+@judged_once()
 def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, path: Path) -> None:
     """Write the report of a study from its stored datasets and figures.
 
