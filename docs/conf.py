@@ -6,6 +6,7 @@ import sys
 from hashlib import sha256
 from importlib import metadata
 from pathlib import Path
+from xml.etree import ElementTree
 
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
@@ -72,8 +73,23 @@ def _mathml(visitor, node, display: bool) -> None:
     text = node.astext()
     if display and "\\\\" in text and "\\begin" not in text:
         text = rf"\begin{{aligned}}{text}\end{{aligned}}"
-    visitor.body.append(tex2mathml(text, as_block=display))
+    visitor.body.append(_subscripts_beside(tex2mathml(text, as_block=display)))
     raise SkipNode
+
+
+def _subscripts_beside(mathml: str) -> str:
+    """Return MathML in which the subscript of an accented letter stands beside it, not beneath."""
+    namespace = "http://www.w3.org/1998/Math/MathML"
+    ElementTree.register_namespace("", namespace)
+    root = ElementTree.fromstring(mathml.replace("&ApplyFunction;", "\N{FUNCTION APPLICATION}"))
+    for scripted in root.iter(f"{{{namespace}}}munderover"):
+        base, subscript, accent = scripted
+        if accent.get("stretchy") == "false":
+            accented = ElementTree.Element(f"{{{namespace}}}mover", accent="true")
+            accented.extend([base, accent])
+            scripted.tag = f"{{{namespace}}}msub"
+            scripted[:] = [accented, subscript]
+    return ElementTree.tostring(root, encoding="unicode")
 
 
 def _link(app: Sphinx, what: str, name: str, thing, options, lines: list[str]) -> None:

@@ -68,6 +68,48 @@ def test_links_lead_somewhere_and_nothing_else_is_loaded(page):
     assert broken == []
 
 
+MISDRAWN = """() => {
+  const box = (node) => node.getBoundingClientRect(), last = (node) => node.lastElementChild;
+  const wrong = {
+    msqrt: (node) => box(node).height < box(node.firstElementChild).height,
+    msub: (node) => box(last(node)).left < box(node.firstElementChild).right - 2,
+    munderover: (node) => last(node).getAttribute("stretchy") === "false",
+  };
+  const nodes = Object.keys(wrong).map((name) => [...document.querySelectorAll(name)]);
+  return document.fonts.ready.then(() => ({
+    fonts: [...document.fonts].filter((f) => f.status === "loaded").map((f) => f.family),
+    counts: nodes.map((list) => list.length),
+    misdrawn: nodes.flat().filter((n) => wrong[n.localName](n)).map((n) => n.outerHTML),
+  }));
+}"""
+"""Roots lower than what they span, and subscripts that are not beside their letter."""
+
+
+@pytest.mark.chromium
+def test_equations_are_drawn_as_written():
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    if CHROMIUM is None:
+        pytest.skip("there is no command chromium")
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        page: Any = browser.new_page()
+        page.goto((SITE / "theory.html").as_uri())
+        drawn = page.evaluate(MISDRAWN)
+        browser.close()
+    assert any("STIX Two Math" in family for family in drawn["fonts"])
+    assert min(drawn["counts"][:2]) > 0
+    assert drawn["misdrawn"] == []
+
+
+def test_fractions_have_braces():
+    r"""The renderer takes \frac12 m for 12 over m."""
+    texts = {path: path.read_text(encoding="utf-8") for path in (ROOT / "docs").rglob("*.md")}
+    loose = re.compile(r"\\[dt]?frac(?! *\{)")
+    assert {
+        path.name: loose.findall(text) for path, text in texts.items() if loose.search(text)
+    } == {}
+
+
 @pytest.mark.chromium
 def test_no_page_asks_for_anything_outside():
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
