@@ -35,6 +35,7 @@ _COMMANDS = {
     "compare": "impactlab.cli.results:compare",
     "export": "impactlab.cli.results:export",
     "index": "impactlab.cli.results:index",
+    "schema": "impactlab.cli.studies:schema",
     "clean": "impactlab.cli.studies:clean",
     "compile": "impactlab.cli.simulate:compile_kernels",
 } | wings.commands()

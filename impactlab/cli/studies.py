@@ -29,6 +29,7 @@ FILES = {
 _ELSEWHERE = (
     r"!?\[([^\]]*)\]\((?!https?:|#|studies\.md|parts\.md|scaling\.md|contact_laws\.md)[^)]*\)"
 )
+_SCHEMA = "study.schema.json"
 _ENVIRONMENT = """# For snakemake --software-deployment-method conda
 channels: [conda-forge, nodefaults]
 dependencies: ["python>=3.11,<3.14", pip, pip: ["impactlab[workflow]=={version}"]]
@@ -41,8 +42,9 @@ Needed: `pip install 'impactlab[workflow]'`. Then, in this folder:
     impactlab go studies/velocity.yaml   # one study; then open results/velocity/report.html
 
 A study is a file in `studies/`: copy one, rename it and change it. Both commands resume where they
-were interrupted, and do again what a changed file asks for. `impactlab -h` lists the other
-commands; `docs/studies.md` lists every key. For clusters: `profiles/`, `docs/parts.md`.
+were interrupted, and do again what a changed file asks for. Editors complete and check the keys by
+`studies/study.schema.json` (Visual Studio Code: with the extension YAML). `impactlab -h` lists the
+other commands; `docs/studies.md` lists every key. For clusters: `profiles/`, `docs/parts.md`.
 """
 
 
@@ -66,6 +68,19 @@ def studies(
 
     read = [read_any(path) for path in files]
     print_studies((study.name, study.size, study.title) for study in read)
+
+
+def schema() -> None:
+    """Print the JSON Schema of study files, with which editors complete and check them."""
+    print(_schema())
+
+
+def _schema() -> str:
+    import json
+
+    from impactlab.study.schema.json_schema import study_schema
+
+    return json.dumps(study_schema(), indent=1, ensure_ascii=False)
 
 
 def status(study: StudyFile, results: Results = RESULTS) -> None:
@@ -122,6 +137,10 @@ def new(folder: Annotated[Path, typer.Argument(help="New or empty folder.")]) ->
     for page in (folder / "docs").glob("*.md"):  # without links to pages that are not copied
         text = page.read_text(encoding="utf-8")
         page.write_text(re.sub(_ELSEWHERE, r"\1", text), encoding="utf-8")
+    (folder / "studies" / _SCHEMA).write_text(_schema(), encoding="utf-8")
+    for path in (folder / "studies").glob("*.yaml"):
+        text = path.read_text(encoding="utf-8")
+        path.write_text(f"# yaml-language-server: $schema={_SCHEMA}\n{text}", encoding="utf-8")
     (folder / "environment.yaml").write_text(_ENVIRONMENT.format(version=version("impactlab")))
     (folder / "README.md").write_text(_README)
     install = "" if which("snakemake") else "pip install 'impactlab[workflow]' && "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -54,7 +54,11 @@ def at_key(key: str, reason: str) -> PydanticCustomError:
 
 def quantity(units: str) -> Any:
     """Return the type of a number in SI `units`, or a string with a unit of that dimension."""
-    return Annotated[float, BeforeValidator(partial(si, units=units))]
+    return Annotated[float, _read_quantity(units)]
+
+
+def _read_quantity(units: str) -> BeforeValidator:
+    return BeforeValidator(partial(si, units=units), json_schema_input_type=float | str)
 
 
 def one_of(kind: str, choices: Collection[str]) -> BeforeValidator:
@@ -65,7 +69,7 @@ def one_of(kind: str, choices: Collection[str]) -> BeforeValidator:
             raise ValueError(unknown(kind, value, choices))
         return value
 
-    return BeforeValidator(check)
+    return BeforeValidator(check, json_schema_input_type=Literal[tuple(choices)])
 
 
 def names(kind: str, choices: Collection[str]) -> PlainValidator:
@@ -83,7 +87,8 @@ def names(kind: str, choices: Collection[str]) -> PlainValidator:
             raise ValueError(f"names {twice[0]} more than once: name each {kind} once")
         return tuple(entries)
 
-    return PlainValidator(read)
+    word: Any = one_of(kind, choices).json_schema_input_type
+    return PlainValidator(read, json_schema_input_type=Literal["all"] | list[word])
 
 
 def name_at(key: str, choices: Collection[str], data: Any) -> str:
@@ -123,7 +128,7 @@ def requires(test: Callable[[Any], bool], message: str) -> AfterValidator:
 
 Names = Annotated[tuple[StrictStr, ...], requires(bool, "is empty: list at least one name")]
 """A list of words, at least one."""
-Number = Annotated[float, BeforeValidator(partial(si, units="1"))]
+Number = Annotated[float, _read_quantity("1")]
 """A pure number."""
 Whole = Annotated[int, BeforeValidator(whole)]
 """A whole number."""

@@ -1,5 +1,6 @@
 """A project made by someone who has the wheel alone."""
 
+import json
 import os
 import re
 import subprocess
@@ -19,8 +20,15 @@ ROOT = Path(__file__).parents[2]
 def test_a_project_brings_workflow_and_studies(tmp_path):
     told = impactlab("new", "mine", cwd=tmp_path).stdout
     assert told.endswith("cd mine && snakemake --cores all\n")
-    for name in ("Snakefile", "workflow/rules/common.smk", "studies/velocity.yaml"):
+    for name in ("Snakefile", "workflow/rules/common.smk"):
         assert (tmp_path / "mine" / name).read_bytes() == (ROOT / name).read_bytes()
+    studies = tmp_path / "mine" / "studies"
+    modeline, text = (studies / "velocity.yaml").read_text().split("\n", 1)
+    assert text == (ROOT / "studies" / "velocity.yaml").read_text()
+    schema = json.loads(
+        (studies / modeline.removeprefix("# yaml-language-server: $schema=")).read_text()
+    )
+    assert schema["else"]["else"]["properties"]["impact"]["properties"]["velocity"]
     assert "snakemake --cores all" in (tmp_path / "mine" / "README.md").read_text()
     assert_pages_are_there(tmp_path / "mine")
     again = called("new", "mine", cwd=tmp_path)

@@ -27,7 +27,7 @@ from impactlab.methods.sobol import Sobol
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import BASES, Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
-from impactlab.model.quantities import duration
+from impactlab.model.quantities import duration, symbol
 from impactlab.solver import SCHEMES
 from impactlab.validation.fields import (
     FileSection,
@@ -66,8 +66,6 @@ _DEFAULTS = {
 
 def _section(*path: str, **fields: Any) -> type[FileSection]:
     """Return the section of a part of the model, with a key per field, from PARAMETERS."""
-    # a value may be null where that is the default
-    nothing = WrapValidator(lambda value, read: None if value is None else read(value))
     keys: dict[str, Any] = {}
     for name, entry in PARAMETERS.items():
         if entry.path[: len(path)] == path:
@@ -76,18 +74,30 @@ def _section(*path: str, **fields: Any) -> type[FileSection]:
                 continue
             optional = not deeper and _DEFAULTS[name] is None
             kind = _section(*path, key) if deeper else value_type(entry)
-            keys[key] = (Annotated[kind, nothing] if optional else kind, None)
+            about = (
+                "" if deeper else f"{entry.long_name}, {symbol(entry.units)}".removesuffix(", 1")
+            )
+            keys[key] = (_or_null(kind) if optional else kind, Field(None, description=about))
     return create_model("_".join(path), __base__=FileSection, **(keys | fields))
 
 
-_IMPACT = _section("impact", base=(Annotated[str, one_of("base", BASES)], None))
+def _or_null(kind: Any) -> Any:
+    """Return the type of a value that may be null, where that is the default."""
+    read = WrapValidator(
+        lambda value, read: None if value is None else read(value),
+        json_schema_input_type=kind | None,
+    )
+    return Annotated[kind, read]
+
+
+IMPACT = _section("impact", base=(Annotated[str, one_of("base", BASES)], None))
 _SCHEME = Annotated[str, one_of("scheme", (*SCHEMES, "auto"))]
-_DISCRETISATION = _section("discretisation", auto=(Auto | None, None), scheme=(_SCHEME, None))
+DISCRETISATION = _section("discretisation", auto=(Auto | None, None), scheme=(_SCHEME, None))
 
 
 def read_impact(data: Any, info: ValidationInfo) -> Impact:
     """Read an impact: a base with changes, or every value. Raises ValueError naming the keys."""
-    section: Any = _IMPACT.model_validate(data, context=info.context)
+    section: Any = IMPACT.model_validate(data, context=info.context)
     defaults = {} if section.base else _DEFAULTS
     values = {name: defaults[name] for name in defaults if PARAMETERS[name].path[0] == "impact"}
     values |= _given_values(section, "impact")
@@ -99,7 +109,7 @@ def read_impact(data: Any, info: ValidationInfo) -> Impact:
 def read_discretisation(data: Any, info: ValidationInfo) -> tuple[Discretisation, Auto | None]:
     """Read a discretisation, and how to find it, if at all. Raises ValueError naming the keys."""
     data = {"auto": {}} if data == "auto" else data
-    section: Any = _DISCRETISATION.model_validate(data, context=info.context)
+    section: Any = DISCRETISATION.model_validate(data, context=info.context)
     values = _given_values(section, "discretisation")
     for name in values.keys() & {"nodes", "points", "courant"} if section.auto else ():
         raise at_key(name, "cannot be given beside auto, which finds it: take out one of the two")

@@ -188,11 +188,11 @@ _NOT_KNOWN = "holds a Python function, which is in no file: build the study in P
 
 def _function_study(source: Source) -> FunctionStudy:
     name, path = source.data.get("function"), str(source.path)
-    kind: type[_FunctionFile]
+    kind: type[FunctionFile]
     if isinstance(name, str) and "@" in name:
         kind, (parameters, responses) = _PythonFunctionFile, _python_function(source, name)
     elif isinstance(name, str) and name in FUNCTIONS:
-        kind, responses = _FunctionFile, {"value": "1"}
+        kind, responses = FunctionFile, {"value": "1"}
         parameters = {key: Parameter(key, "1", key, ()) for key in FUNCTIONS[name].ranges}
     else:
         raise StudyError(Problem(path, "function", unknown("function", name, FUNCTIONS), name))
@@ -258,23 +258,29 @@ def _units(entry: Any) -> str:
     return next((units for units in stated if units != "1"), "1")
 
 
-class _FunctionFile(Heading):
+class FunctionFile(Heading):
+    """The keys of a study of a test function."""
+
     function: str
     sampling: Annotated[Grid | RandomSample, PlainValidator(read_sampling)]
     limits: Limits = Field(default_factory=dict)
     analysis: Analysis = Field(default_factory=Analysis)
 
 
-class _PythonFunctionFile(_FunctionFile):
+class _PythonFunctionFile(FunctionFile):
     responses: Names = ("value",)
 
 
-def _verification(source: Source) -> Verification:
+def verification_file() -> type[Heading]:
+    """Return the section that a file of checks is."""
     from impactlab.verification.catalogue import CATALOGUE  # late: loads all independent solutions
 
     listed = Annotated[tuple[str, ...], names("check", CATALOGUE)]
-    kind = create_model("VerificationFile", __base__=Heading, checks=(listed, ...))
-    values = validated(kind, source.data, str(source.path)).model_dump()
+    return create_model("VerificationFile", __base__=Heading, checks=(listed, ...))
+
+
+def _verification(source: Source) -> Verification:
+    values = validated(verification_file(), source.data, str(source.path)).model_dump()
     return Verification(name=source.name, path=source.path, text=source.text, **values)
 
 
