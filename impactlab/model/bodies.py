@@ -104,8 +104,8 @@ class Beam:
         and slope are zero), "free" (moment and shear force are zero), "elastic" (springs) or
         "roller" (pinned, but free along the axis, which the beam model "von_karman" alone moves:
         the others take it as "pinned"). Clamped and free ends need the beam models
-        "euler_bernoulli", "elastic", "timoshenko" or "von_karman", elastic ones one of the first
-        three.
+        "euler_bernoulli", "elastic", "timoshenko" or "von_karman", elastic ones, too; in the last
+        an elastic end holds the axis if `stiffness` holds the deflection.
     stiffness_left, stiffness_right : Quantity, default 0
         Shear force over the deflection at an elastic end, in N/m.
     rotational_stiffness_left, rotational_stiffness_right : Quantity, default 0
@@ -119,7 +119,7 @@ class Beam:
     foundation_stiffness : Quantity, default 0
         Force per length over the deflection of a bed of springs beneath the beam (Winkler), in
         N/m2; they pull as they push. Damping and foundation need the beam models
-        "euler_bernoulli", "elastic" or "timoshenko" (solver/resistance.py).
+        "euler_bernoulli", "elastic", "timoshenko" or "von_karman" (solver/resistance.py).
 
     Raises
     ------

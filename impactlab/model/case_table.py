@@ -218,7 +218,9 @@ def _table(
             values[name] = sum(number * (values[name] == word) for number, word in numbered)
     for side in ("left", "right"):  # a roller is a pinned end whose axis is not held
         support, axial = values[f"support_{side}"], map(SUPPORTS.index, AXIAL_SUPPORTS)
-        values[f"axis_held_{side}"] = np.isin(support, [*axial])
+        springs = np.equal(support, SUPPORTS.index("elastic"))
+        springs = springs & np.greater(values[f"stiffness_{side}"], 0.0)
+        values[f"axis_held_{side}"] = np.isin(support, [*axial]) | springs
         values[f"support_{side}"] = np.where(support == SUPPORTS.index("roller"), 0, support)
     points = profile_points(impact.beam.profile or ())
     values["beam_profile"] = np.zeros((PROFILE, 2))

@@ -23,7 +23,6 @@ from impactlab.solver import (
     LOADS,
     PRESTRESSES,
     RESISTANCES,
-    SPRUNG_MODELS,
     WAVE_MODELS,
 )
 from impactlab.solver.contact import LAWS
@@ -38,10 +37,10 @@ HINGES = ("pinned", "roller")
 """Supports against deflection alone; a roller does not hold the axis (solver/von_karman.py)."""
 MOVING_SUPPORTS = ("free", "elastic")
 """Supports whose end can be struck."""
-SPRUNG_BEAM = f"{' or '.join(SPRUNG_MODELS)} with elastic ends: change it, or set other supports"
+SPRUNG_BEAM = f"{' or '.join(WAVE_MODELS)} with elastic ends: change it, or set other supports"
 """End of messages on what elastic ends cannot have."""
 RESISTED_BEAM = (
-    f"{' or '.join(SPRUNG_MODELS)} with {', '.join(RESISTANCES[:-1])} or {RESISTANCES[-1]}: "
+    f"{' or '.join(WAVE_MODELS)} with {', '.join(RESISTANCES[:-1])} or {RESISTANCES[-1]}: "
     "change it, or set these to 0"
 )
 """The same, of what resists the motion."""
@@ -55,9 +54,7 @@ OTHER_BEAM = (
     "pinned, support_right: pinned and strike_position: 0.5"
 )
 """Ends of messages on what other beams cannot have."""
-SETTLING_MODELS = tuple(model for model in BEAM_MODELS if model != "von_karman")
-"""Models of the beam that can be put to rest between two strikes."""
-OTHER_MODEL = f"a model of the beam other than {', '.join(SETTLING_MODELS)}"
+OTHER_MODEL = f"a model of the beam other than {', '.join(BEAM_MODELS)}"
 """End of the message on what other models cannot have."""
 OTHER_SECTION = "with a section that is no rectangle: change it, or set shape: rectangle"
 """The same, of other sections."""
@@ -102,11 +99,11 @@ class Impact:
         what other ends need.
     strikes : int, default 1
         Number of times that a sphere with this velocity strikes this place, the beam at rest again
-        before each (solver/settle.py) unless `strike_interval` is stated: plastic strains and dent
+        before each (solver/settle.py, settle_stretch.py) unless `strike_interval` is stated: plastic strains and dent
         are carried over. Responses are those of the last strike, but that dents, plastic strains
         and dissipated energies are what all of them have left, and deflections count from the axis
         before the first. More than one need ends or a foundation that hold the beam, and another
-        beam model than "solid" and "von_karman".
+        beam model than "solid".
     strike_interval : Quantity, optional
         Time from one strike to the next, in s, between which the beam goes on moving; at least the
         duration, after which the sphere of the strike before is taken away. By default the beam
@@ -154,7 +151,7 @@ class Impact:
         instance("Impact", "beam", self.beam, Beam)
         strikes = integer("Impact", "strikes", self.strikes, 1)
         object.__setattr__(self, "strikes", strikes)
-        alone = np.equal(strikes, 1) | among(self.beam_model, SETTLING_MODELS)
+        alone = np.equal(strikes, 1) | among(self.beam_model, BEAM_MODELS)
         require(alone, "Impact", "strikes", strikes, f"must be 1 with {OTHER_MODEL}")
         if self.strike_interval is not None:
             positive("Impact", "strike_interval", self.strike_interval)
@@ -181,10 +178,10 @@ class Impact:
         sound = among(self.beam_model, BEAM_MODELS) | np.equal(beam.shape, "rectangle")
         require(sound, "Impact", "beam_model", self.beam_model, message)
         sprung = np.equal(beam.support_left, "elastic") | np.equal(beam.support_right, "elastic")
-        sound = among(self.beam_model, SPRUNG_MODELS) | ~sprung
+        sound = among(self.beam_model, WAVE_MODELS) | ~sprung
         require(sound, "Impact", "beam_model", self.beam_model, f"must be {SPRUNG_BEAM}")
         resisted = sum(np.greater(getattr(beam, field), 0.0) for field in RESISTANCES)
-        sound = among(self.beam_model, SPRUNG_MODELS) | np.equal(resisted, 0)
+        sound = among(self.beam_model, WAVE_MODELS) | np.equal(resisted, 0)
         require(sound, "Impact", "beam_model", self.beam_model, f"must be {RESISTED_BEAM}")
         sound = np.not_equal(beam.shape, "laminate") | np.not_equal(self.beam_model, "von_karman")
         require(sound, "Impact", "beam_model", self.beam_model, STRETCHED_LAYERS)

@@ -34,7 +34,5 @@ PRESTRESSES = ("ignored", "bending")
 """What stress the metal is under where the contact yields (contact/prestress.py)."""
 BENDING_MODELS = BEAM_MODELS[:2]
 """Those that have every scheme in time; the others have leapfrog alone."""
-SPRUNG_MODELS = BEAM_MODELS[:3]
-"""Those with springs: at elastic ends, and of a foundation; these can be damped, too."""
 WAVE_MODELS = BEAM_MODELS[:4]
-"""Those of which every node moves, with any ends, struck anywhere."""
+"""Those of which every node moves, with any ends, on a foundation, damped, struck anywhere."""

@@ -358,7 +358,7 @@ def bending_energy(beam: BeamState, M_0: Array, EI: float, grid: BeamGrid, now: 
 
 
 @compiled
-def _springs(w: float, beside: float, turn: float, lift: float) -> float:
+def end_springs(w: float, beside: float, turn: float, lift: float) -> float:
     """Return the energy of an elastic end's springs, over EI/(2 dx^3), in m2."""
     return 0.5 * lift * w * w + 2.0 * turn * (beside - w) * (beside - w)
 
@@ -372,10 +372,10 @@ def _bending_sum(w: Array, now: int, M_0: Array, EI: float, grid: BeamGrid) -> f
     if grid.right == SYMMETRIC:
         total, share = COPIES * total, 0.5 * COPIES
     if grid.left == SPRUNG:
-        springs = _springs(w[now, 2], w[now, 3], grid.turn_left, grid.lift_left)
+        springs = end_springs(w[now, 2], w[now, 3], grid.turn_left, grid.lift_left)
         total += share * EI * grid.per_dx2 * grid.per_dx2 * springs
     if grid.right == SPRUNG:
-        springs = _springs(w[now, last], w[now, last - 1], grid.turn_right, grid.lift_right)
+        springs = end_springs(w[now, last], w[now, last - 1], grid.turn_right, grid.lift_right)
         total += share * EI * grid.per_dx2 * grid.per_dx2 * springs
     if grid.left == CLAMPED:
         kappa = 2.0 * w[now, 3] * grid.per_dx2

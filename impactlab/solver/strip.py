@@ -48,14 +48,14 @@ from impactlab.solver.contact_patch import spread_over_nodes
 from impactlab.solver.fibre_plasticity import curvature, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
 from impactlab.solver.kink import bend_back
-from impactlab.solver.resisted_shear import (
-    ShearResistance,
+from impactlab.solver.resisted_pair import (
+    PairResistance,
     make_resistance,
-    move_resisted,
     resisted_energy,
     rest_resistance,
     take_work,
 )
+from impactlab.solver.resisted_shear import move_resisted
 from impactlab.solver.section import FibreSection
 from impactlab.solver.settle import ROUNDS, end_tangents, yield_on
 from impactlab.solver.state import State
@@ -89,7 +89,7 @@ class Strip(NamedTuple):
     rate: Array
     d_rate: Array
     bent: Array
-    resistance: ShearResistance
+    resistance: PairResistance
 
 
 @allocating
@@ -119,7 +119,8 @@ def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Strip:
 def _step(state: State, now: int, F: float) -> None:
     _, section, grid, beam, plastic, strip = state
     if strip.resistance.acts:
-        take_work(beam, strip.shear, strip.resistance, grid)
+        shear = strip.shear
+        take_work(beam, shear.spin, shear.d_spin, shear.inertia, strip.resistance, grid)
     per_dx = timoshenko.bend_sections(section, grid, beam, plastic, strip.shear, now)
     if strip.inertia > 0.0:
         _stretch(strip, per_dx, grid.last)
@@ -261,7 +262,9 @@ def _energy(state: State, now: int, F: float, u_mid: float) -> float:
     total += timoshenko.shear_energy(beam, shear, plastic.M_0, section.stiffness, grid)
     total += timoshenko.spring_energy(beam, now, shear.psi, shear.spin, grid)
     if strip.resistance.acts:
-        total += resisted_energy(beam, now, shear, strip.resistance, grid)
+        total += resisted_energy(
+            beam, now, shear.spin, shear.d_spin, shear.inertia, strip.resistance, grid
+        )
     return total
 
 

@@ -14,8 +14,10 @@ axial force and moment of a node do the work of the strains of one section, and 
 without strain. Forces are derivatives of the energy dx sum_i W(e_i, kappa_i): that of w_i is the
 difference of P = s (N_i + N_i+1)/2 beside those of the moments. The sum of energies is conserved by
 the semi-discrete beam. An end that is pinned or clamped holds the axis: u is odd and s^2 even about
-it, as at mid-span of a half beam. At a roller and at a free end N is 0. Nothing holds a beam
-with two of these along its axis, and nothing pushes it there: its axial momentum stays 0.
+it, as at mid-span of a half beam. So does an elastic end with a spring against deflection;
+half a spacing beside it stays elastic. At a roller, at a free end and at one with a spring against
+rotation alone N is 0. Nothing holds a beam with two of these along its axis, and nothing pushes it
+there: its axial momentum stays 0.
 
 While no fibre yields, N = N_0 + EA e and M = M_0 - EI kappa. A section remembers N_0, M_0, the
 strains at which its fibres were looked at last, and by how much one of them may be strained from
@@ -31,10 +33,30 @@ from typing import NamedTuple
 
 import numpy as np
 
-from impactlab.solver import euler_bernoulli, timoshenko
-from impactlab.solver.beam import FREE, SYMMETRIC, BeamGrid, BeamState, copies, is_end, mirror
+from impactlab.solver import euler_bernoulli
+from impactlab.solver.beam import (
+    FREE,
+    SPRUNG,
+    SYMMETRIC,
+    BeamGrid,
+    BeamState,
+    copies,
+    end_springs,
+    is_end,
+    mirror,
+)
+from impactlab.solver.contact_patch import spread_over_nodes
 from impactlab.solver.fibre_plasticity import PlasticState, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
+from impactlab.solver.resisted_pair import (
+    PairResistance,
+    make_resistance,
+    resist,
+    resisted_energy,
+    rest_resistance,
+    take_work,
+)
+from impactlab.solver.resisted_stretch import drag_stretch
 from impactlab.solver.section import (
     FAR,
     FibreSection,
@@ -44,9 +66,14 @@ from impactlab.solver.section import (
     make_whole_room,
     return_mapping,
 )
+from impactlab.solver.settle import ROUNDS, rest_nodes
+from impactlab.solver.settle_stretch import static_axis, static_stretch
 from impactlab.solver.state import BeamModel, State
 from impactlab.solver.strain_rate import RateLaw
 from impactlab.solver.types import ONE, Array, Index, Record
+
+_SMALL = 1e-9
+"""Of the yield strain: sections that rest changes by less have not yielded."""
 
 
 class Stretch(NamedTuple):
@@ -57,7 +84,8 @@ class Stretch(NamedTuple):
     dt u_t its increment, dv the last change of that (m), P = N w_x (N): half-way from node i to
     i + 1 at index i. e, kappa (1/m), N (N), M (N m): at nodes, where the step began; N_0 (N).
     memory: e and kappa (1/m) when the fibres of a node were looked at last, and the strain that no
-    fibre yields by from there, (last + 3, 3).
+    fibre yields by from there, (last + 3, 3). resistance: damping and foundation. bands: room for the
+    beam at rest, (5, last + 3).
     """
 
     stiffness: float
@@ -74,6 +102,8 @@ class Stretch(NamedTuple):
     M: Array
     N_0: Array
     memory: Array
+    resistance: PairResistance
+    bands: Array
 
 
 @allocating
@@ -88,8 +118,8 @@ def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Stretch:
     memory[:, 2] = section.moduli.S_y / section.moduli.E
     return Stretch(
         stiffness,
-        grid.first - 1 if left else grid.first,
-        grid.stop + 1 if right else grid.stop,
+        grid.first - 1 if left and grid.left != SPRUNG else grid.first,
+        grid.stop + 1 if right and grid.right != SPRUNG else grid.stop,
         (left, right),
         np.zeros(size),
         np.zeros(size),
@@ -101,13 +131,23 @@ def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Stretch:
         np.zeros(size),
         np.zeros(size),
         memory,
+        make_resistance(case, section, grid),
+        np.zeros((5, size)),
     )
 
 
 @inlined
-def _step(state: State, now: int, F: float) -> None:
-    _, section, grid, beam, plastic, stretch = state
-    u, w, N, M, P = stretch.u, beam.w, stretch.N, stretch.M, stretch.P
+def _strain_sections(
+    section: FibreSection,
+    grid: BeamGrid,
+    beam: BeamState,
+    plastic: PlasticState,
+    stretch: Stretch,
+    now: int,
+    rate: RateLaw | None,
+) -> float:
+    """Set forces and moments of the sections, and moments beyond the ends; return 1/dx."""
+    u, w, N, M = stretch.u, beam.w, stretch.N, stretch.M
     left, right, last = grid.first - 1, grid.stop, grid.last
     if stretch.held[0]:
         u[left - 1] = -u[left]
@@ -116,17 +156,35 @@ def _step(state: State, now: int, F: float) -> None:
     per_dx, edge = 1.0 / grid.dx, section.z[0]
     outside = _strain(w, now, stretch, plastic.M_0, section.stiffness, edge, per_dx)
     if outside > 0.0:
-        _look_at_fibres(stretch, plastic, section, section.rate, grid.dt)
+        _look_at_fibres(stretch, plastic, section, rate, grid.dt)
     if grid.left == FREE:
         M[1] = M[3]
     if grid.right == FREE or grid.right == SYMMETRIC:
         M[last + 1], N[last + 1] = M[last - 1], N[last - 1]
+    if grid.left == SPRUNG or grid.right == SPRUNG:
+        _strain_springs(w, now, stretch, section.stiffness, grid)
+    return per_dx
+
+
+@inlined
+def _step(state: State, now: int, F: float) -> None:
+    _, section, grid, beam, plastic, stretch = state
+    w, M, P, resistance = beam.w, stretch.M, stretch.P, stretch.resistance
+    left, right, last = grid.first - 1, grid.stop, grid.last
+    if resistance.acts:
+        take_work(beam, stretch.v, stretch.dv, grid.mu, resistance, grid)
+        if resistance.lag > 0.0:
+            v, EA = stretch.v, stretch.stiffness
+            drag_stretch(w, now, beam.u, v, P, EA, stretch.held, resistance, grid)
+    per_dx = _strain_sections(section, grid, beam, plastic, stretch, now, section.rate)
     _stretch(w, now, stretch, grid.push, per_dx, left, right)
     P[left - 1], P[right] = -P[left], -P[right - 1]
     mid = grid.mid
     _shift(w, now, beam.u, beam.du, M, P, grid.push, per_dx, F / copies(grid, mid), mid, 2)
     if last > mid:
         _shift(w, now, beam.u, beam.du, M, P, grid.push, per_dx, 0.0, last, mid + 1)
+    if resistance.acts:
+        resist(beam, now, stretch.u, stretch.v, stretch.dv, resistance, grid)
     mirror(w, now, beam.u, grid)
 
 
@@ -153,6 +211,30 @@ def _strain(
         N[i] = N_0[i] + EA * e[i]
         M[i] = M_0[i] - EI * kappa[i]
     return outside
+
+
+@compiled
+def _strain_springs(w: Array, now: int, stretch: Stretch, EI: float, grid: BeamGrid) -> None:
+    """Set strains, force and moment of elastic ends, and the moment beyond them."""
+    N, M, dx = stretch.N, stretch.M, grid.dx
+    for kind, end, inward, half, turn, lift, held in (
+        (grid.left, 2, 1, 2, grid.turn_left, grid.lift_left, stretch.held[0]),
+        (
+            grid.right,
+            grid.last,
+            -1,
+            grid.last - 1,
+            grid.turn_right,
+            grid.lift_right,
+            stretch.held[1],
+        ),
+    ):
+        if kind == SPRUNG:
+            slope = (w[now, end + inward] - w[now, end]) / dx
+            strain = 2.0 * inward * stretch.u[half] / dx + 0.5 * slope * slope
+            N[end] = stretch.stiffness * strain if held else 0.0
+            M[end] = -2.0 * EI * turn * slope / dx
+            M[end - inward] = M[end + inward] - lift * EI / dx**2 * w[now, end]
 
 
 @compiled
@@ -271,11 +353,65 @@ def _elastic_energy(
 
 
 @compiled
+def _spring_energy(beam: BeamState, now: int, stretch: Stretch, EI: float, grid: BeamGrid) -> float:
+    """Return the energy (J) of elastic ends, with half a spacing beside them."""
+    total, w, N, dx = 0.0, beam.w, stretch.N, grid.dx
+    for kind, end, inward, turn, lift in (
+        (grid.left, 2, 1, grid.turn_left, grid.lift_left),
+        (grid.right, grid.last, -1, grid.turn_right, grid.lift_right),
+    ):
+        if kind == SPRUNG:
+            squares = end_springs(w[now, end], w[now, end + inward], turn, lift)
+            total += 0.5 * EI / dx**3 * squares + 0.25 * dx * N[end] * N[end] / stretch.stiffness
+    return grid.copies * total
+
+
+@compiled
 def _energy(state: State, now: int, F: float, u_mid: float) -> float:
-    stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
-    EI = state.section.stiffness
-    elastic = _elastic_energy(state.beam, state.extra, state.plastic.M_0, EI, state.grid)
-    return stored + dissipated + elastic
+    _, section, grid, beam, plastic, stretch = state
+    stored, dissipated = plastic_energy(plastic, section, grid)
+    EI = section.stiffness
+    elastic = _elastic_energy(beam, stretch, plastic.M_0, EI, grid)
+    total = stored + dissipated + elastic
+    if grid.left == SPRUNG or grid.right == SPRUNG:
+        total += _spring_energy(beam, now, stretch, EI, grid)
+    resistance = stretch.resistance
+    if resistance.acts:
+        total += resisted_energy(beam, now, stretch.v, stretch.dv, grid.mu, resistance, grid)
+    return total
+
+
+@compiled
+def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
+    share = 1.0 + state.extra.resistance.h
+    ahead, _, _ = spread_over_nodes(state.beam, state.grid, now, F / share, a)
+    return ahead, 0.0
+
+
+@compiled
+def _settle(state: State) -> None:
+    """Put the beam to rest; sections that this strains too far yield, by turns."""
+    _, section, grid, beam, plastic, stretch = state
+    EI, EA, held, edge = section.stiffness, stretch.stiffness, stretch.held, section.z[0]
+    bands, M_0, N_0 = stretch.bands, plastic.M_0, stretch.N_0
+    bed = stretch.resistance.bed * grid.mu / grid.dt**2
+    rest_resistance(stretch.resistance)
+    for i in range(stretch.v.size):
+        stretch.v[i] = stretch.dv[i] = 0.0
+    small = _SMALL * section.moduli.S_y / section.moduli.E
+    for _ in range(ROUNDS):
+        N = static_stretch(beam.w[0], bands, M_0, N_0, EI, EA, bed, held[0] and held[1], grid)
+        static_axis(stretch.u, beam.w[0], N, N_0, EA, held, grid)
+        rest_nodes(beam, grid)
+        for i in range(M_0.size):
+            bands[4, i] = M_0[i]
+        _strain_sections(section, grid, beam, plastic, stretch, 0, None)
+        change = 0.0
+        for i in range(stretch.start, stretch.stop):
+            change = max(change, abs(stretch.N[i] - N) / EA)
+            change = max(change, edge * abs(M_0[i] - bands[4, i]) / EI)
+        if change < small:
+            break
 
 
 MODEL = BeamModel(
@@ -284,7 +420,7 @@ MODEL = BeamModel(
     euler_bernoulli.MODEL.curvature,
     _energy,
     euler_bernoulli.deflected,
-    timoshenko.MODEL.spread,
-    settle=None,
+    _spread,
+    settle=_settle,
     section=(make_whole_room, cut_whole_section),
 )

@@ -33,7 +33,7 @@ from impactlab.solver import (
     BENDING_MODELS,
     LUMPED_MODELS,
     RESISTANCES,
-    SPRUNG_MODELS,
+    WAVE_MODELS,
 )
 from impactlab.study.schema.declarations import FunctionStudy, ImpactStudy, StudyFile
 from impactlab.validation.errors import unknown
@@ -229,7 +229,7 @@ def _other_beams(file: StudyFile, models: set[Value]) -> Reasons:
     if models - set(MOVING_MODELS):
         reason = f"must be {' or '.join(MOVING_MODELS)} {OTHER_BEAM}"
         yield key_of("beam_model", sampling), reason
-    elif "elastic" in supports and models - set(SPRUNG_MODELS):
+    elif "elastic" in supports and models - set(WAVE_MODELS):
         yield key_of("beam_model", sampling), f"must be {SPRUNG_BEAM}"
 
 
@@ -238,7 +238,7 @@ def _resisted_beams(file: StudyFile, ends: Extremes) -> Reasons:
     sampling, grid = file.sampling, file.discretisation[0]
     resisted = any(ends[name][1] > 0.0 for name in RESISTANCES)
     models = set(values_of(sampling, "beam_model", file.impact.beam_model))
-    if resisted and models - set(SPRUNG_MODELS):
+    if resisted and models - set(WAVE_MODELS):
         yield key_of("beam_model", sampling), f"must be {RESISTED_BEAM}"
     schemes = values_of(sampling, "scheme", grid.scheme)
     if ends["damping_ratio"][1] > 0.0 and "leapfrog" in schemes:

@@ -1,0 +1,154 @@
+"""Von Karman beams on springs, damped, on a foundation, struck again: limits, statics, energy."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+import impactlab as il
+from impactlab.solver.outputs import SERIES
+from impactlab.verification.cases import elastic
+
+from .test_resisted_shear import BED, CANTILEVER, RAYLEIGH, SPRINGS, beam_of
+
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning"),
+    pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning"),
+]
+
+CLAMPED = {"support_left": "clamped", "support_right": "clamped"}
+EQUAL = {
+    f"{kind}stiffness_{side}": value
+    for side in ("left", "right")
+    for kind, value in (("", 3e6), ("rotational_", 2e4))
+}
+EQUAL |= {"support_left": "elastic", "support_right": "elastic"}
+
+
+def stretching(velocity, **values):
+    return beam_of(velocity, "von_karman", **{"radius": 0.035} | values)
+
+
+@pytest.mark.parametrize(
+    ("values", "place"),
+    [
+        (SPRINGS, 0.4),
+        (EQUAL | BED, 0.5),
+        (CANTILEVER | RAYLEIGH, 1.0),
+        (SPRINGS | BED | RAYLEIGH, 0.25),
+        (CLAMPED | RAYLEIGH, 0.5),
+    ],
+    ids=["springs", "half", "cantilever", "all", "clamped"],
+)
+def test_tiny_deflections_are_those_of_euler_and_bernoulli(values, place):
+    impact = stretching(1e-3, place=place, **values)
+    grid = il.Discretisation(nodes=41)
+    runs = [
+        il.simulate(replace(impact, beam_model=model), grid, duration=2e-3, samples=401)
+        for model in ("von_karman", "euler_bernoulli")
+    ]
+    for name in ("contact_force", "midspan_deflection"):
+        ours, expected = (run[name].values for run in runs)
+        assert np.abs(ours - expected).max() < 1e-4 * np.abs(expected).max(), name
+
+
+@pytest.mark.parametrize(
+    ("values", "place", "load"),
+    [
+        (SPRINGS, 0.4, "point"),
+        (EQUAL | BED, 0.5, "contact_patch"),
+        (CLAMPED | BED, 0.25, "point"),
+        ({"support_right": "roller"}, 0.5, "contact_patch"),
+    ],
+    ids=["springs", "half", "clamped", "roller"],
+)
+def test_the_balance_of_energy_counts_springs_foundation_and_damping(values, place, load):
+    """The error is no more than that of an undamped run, though damping takes much."""
+    runs = [
+        il.simulate(
+            stretching(20.0, place=place, load=load, **values, **damping),
+            il.Discretisation(nodes=65, points=9),
+            duration=4e-3,
+        )
+        for damping in ({}, {"mass_damping": 200.0, "stiffness_damping": 1e-5})
+    ]
+    assert [run.energy_error.item() < 5e-4 for run in runs] == [True, True]
+    assert runs[1].plastic_dissipation.item() > 0.0
+    lower = [np.abs(run.midspan_deflection[-400:]).max().item() for run in runs]
+    assert lower[1] < 0.95 * lower[0]
+
+
+def least_energy(beam, force, terms=40):
+    """Return the deflection under a force in the middle, of a constant and sines (Ritz)."""
+    n = np.arange(1, 2 * terms, 2)
+    k, L = n * np.pi / beam.span, beam.span
+    bent = 0.5 * L * beam.bending_stiffness * k**4
+    EA = beam.material.youngs_modulus * beam.section.area
+    springs, bed = 2.0 * beam.stiffness_left, beam.foundation_stiffness
+
+    def energy(scaled):
+        rigid, a = scaled[0] * beam.depth, scaled[1:] * beam.depth / n**2
+        longer = 0.25 * L * np.sum((k * a) ** 2)
+        total = 0.5 * (springs * rigid**2 + np.sum(bent * a**2) + EA / L * longer**2)
+        total += 0.5 * bed * (L * rigid**2 + 4 * rigid * np.sum(a / k) + 0.5 * L * np.sum(a**2))
+        return (total - force * (rigid + np.sum(a * np.sin(0.5 * n * np.pi)))) / force / beam.depth
+
+    least = minimize(energy, np.zeros(terms + 1), method="BFGS", options={"gtol": 1e-9})
+    return beam.depth * (least.x[0] + np.sum(least.x[1:] / n**2 * np.sin(0.5 * n * np.pi)))
+
+
+@pytest.mark.parametrize("bed", [0.0, 5e5])
+def test_a_heavy_sphere_at_rest_bends_the_beam_as_in_statics(bed):
+    """By more than the depth, on springs that hold the axis, until damping has its way."""
+    ends = {
+        f"{name}_{side}": value
+        for side in ("left", "right")
+        for name, value in (("support", "elastic"), ("stiffness", 1e6))
+    }
+    impact = stretching(1e-3, depth=0.01, mass_damping=300.0, foundation_stiffness=bed, **ends)
+    impact = replace(elastic(impact), gravity=8e4 if bed else 5e4)
+    run = il.simulate(impact, il.Discretisation(nodes=41), duration=0.15, samples=2001)
+    force = impact.sphere.total_mass * impact.gravity
+    assert run.contact_force.values[1900:].mean() == pytest.approx(force, rel=1e-3)
+    exact = least_energy(impact.beam, force)
+    assert exact > impact.beam.depth
+    assert run.midspan_deflection.values[1900:].mean() == pytest.approx(exact, rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("values", "place", "velocity"),
+    [
+        (CLAMPED, 0.5, 30.0),
+        ({}, 0.5, 20.0),
+        (SPRINGS | BED, 0.25, 20.0),
+        ({"support_left": "clamped", "support_right": "roller"}, 0.5, 20.0),
+    ],
+    ids=["clamped", "pinned", "springs", "roller"],
+)
+def test_a_damped_beam_comes_to_rest_by_itself(values, place, velocity):
+    """Alike what static equilibrium leaves, with axial force and fibres that have yielded."""
+    impact = stretching(velocity, place=place, mass_damping=600.0, **values)
+    impact = replace(impact, gravity=0.0, strikes=3, contact="finite_element")
+    grid = il.Discretisation(nodes=41, points=9)
+    still, run = (
+        il.simulate(case, grid, duration="12 ms", samples=2)
+        for case in (impact, replace(impact, strike_interval="90 ms"))
+    )
+    assert np.abs(still.residual_deflection_over_strikes).min() > 1e-4
+    for name in SERIES:
+        ours, expected = (of[f"{name}_over_strikes"].values for of in (still, run))
+        assert ours == pytest.approx(expected, rel=1e-5), name
+    assert still.energy_error.item() < 2e-3
+
+
+def test_stretching_slows_the_growth_of_a_clamped_beams_deflection():
+    impact = replace(stretching(20.0, **CLAMPED), gravity=0.0, strikes=5, contact="finite_element")
+    grid = il.Discretisation(nodes=41, points=9)
+    runs = (
+        il.simulate(replace(impact, beam_model=model), grid, duration="12 ms", samples=2)
+        for model in ("von_karman", "euler_bernoulli")
+    )
+    ours, plain = (run.residual_deflection_over_strikes.values for run in runs)
+    assert (np.diff(ours) > 0.0).all()
+    assert ours[-1] - ours[0] < 0.8 * (plain[-1] - plain[0])
