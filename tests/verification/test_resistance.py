@@ -265,7 +265,7 @@ def test_leaps_begin_from_the_rest_that_the_foundation_leaves():
     ("values", "change", "message"),
     [
         ({"mass_damping": -1.0}, {}, "Beam.mass_damping = -1.0: must not be negative"),
-        ({"stiffness_damping": 1e-6}, {"beam_model": "von_karman"}, "must be euler_bernoulli or"),
+        ({"stiffness_damping": 1e-6}, {"beam_model": "spring_mass"}, "must be euler_bernoulli or"),
         ({"damping_ratio": 0.01}, {"beam_model": "rigid"}, "must be euler_bernoulli or"),
         ({"damping_ratio": 0.01}, {}, "damping_ratio = 0.01: is of modes: set scheme: modal"),
     ],

@@ -108,7 +108,7 @@ def test_a_heavy_sphere_at_rest_bends_the_beam_as_in_statics(bed):
     }
     impact = stretching(1e-3, depth=0.01, mass_damping=300.0, foundation_stiffness=bed, **ends)
     impact = replace(elastic(impact), gravity=8e4 if bed else 5e4)
-    run = il.simulate(impact, il.Discretisation(nodes=41), duration=0.15, samples=2001)
+    run = il.simulate(impact, il.Discretisation(nodes=41), duration="150 ms", samples=2001)
     force = impact.sphere.total_mass * impact.gravity
     assert run.contact_force.values[1900:].mean() == pytest.approx(force, rel=1e-3)
     exact = least_energy(impact.beam, force)

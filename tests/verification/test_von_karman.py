@@ -253,7 +253,6 @@ def test_yielding_beam_is_that_of_opensees(left, right, place):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"support_left": "elastic", "stiffness_left": 1e6}, "elastic or timoshenko with elastic"),
         ({"contact_compliance": "strip"}, "set beam_model: timoshenko"),
         ({"scheme": "modal"}, "beam_model = 'von_karman' has 'leapfrog' alone"),
     ],
