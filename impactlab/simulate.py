@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from impactlab.duration import too_short
-from impactlab.model.case_table import case_table
+from impactlab.model.case_table import NO_INTERVAL, case_table
 from impactlab.model.checks import instance, integer, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
@@ -21,7 +21,7 @@ from impactlab.model.plausibility import (
     implausibilities,
     numbers,
 )
-from impactlab.model.quantities import Quantity, as_text, in_si
+from impactlab.model.quantities import Quantity, as_text, engineering, in_si
 from impactlab.model.quantities import duration as duration_of
 from impactlab.solve import fibre_section, profile_coordinates, solve
 from impactlab.solver.contact.history import make_pair
@@ -29,7 +29,6 @@ from impactlab.solver.stability import discretise
 from impactlab.variables import (
     PROFILES,
     RESPONSES,
-    SHAKEDOWN,
     VARIABLES,
     answer_variables,
     described,
@@ -124,18 +123,20 @@ def run_dataset(
     duration: float,
     samples: int = 2001,
     frames: int = 0,
+    strikes: int = 0,
 ) -> xr.Dataset:
     """Return what `simulate` returns, whatever the values and the duration (in s) may be.
 
-    For checks, which scale units, and for runs that end early on purpose.
+    For checks, which scale units, and for runs that end early on purpose. strikes: length of
+    `strike`; by default the number of strikes, of a single one none.
     """
     grid = discretisation.resolved([impact.beam_model])
     cases = case_table(impact, grid, duration=duration)
-    several = impact.strikes if impact.strikes > 1 else 0
-    answers = solve(cases, samples=samples, profiles=True, strikes=several, by_sphere=True)
+    strikes = strikes or (impact.strikes if impact.strikes > 1 else 0)
+    answers = solve(cases, samples=samples, profiles=True, strikes=strikes, by_sphere=True)
     axes = {"time": np.linspace(0.0, duration, samples)}
-    if several:
-        axes["strike"] = np.arange(1.0, several + 1.0)
+    if strikes:
+        axes["strike"] = np.arange(1.0, strikes + 1.0)
     if cases["further"][0]:
         axes["sphere"] = np.arange(1.0, cases["further"][0] + 2.0)
     if frames:
@@ -143,8 +144,6 @@ def run_dataset(
         answers |= fields
     axes |= profile_coordinates(impact, grid)
     variables = answer_variables(answers, tuple(RESPONSES), ())
-    if several:
-        variables["shakedown_strike"] = ("run",), _shakedown(answers)
     fixed = flatten(impact, grid) | {"sphere_mass": impact.sphere.total_mass, "duration": duration}
     fixed["shear_coefficient"] = impact.beam.shear_correction
     blank = _blank_run(
@@ -159,21 +158,6 @@ def run_dataset(
     for name, value in values.items():
         dataset.variables[name].data = value
     return dataset
-
-
-def _shakedown(answers: Mapping[str, np.ndarray[Any, Any]]) -> np.ndarray[Any, Any]:
-    """Return the strike of each run from which on nothing grows, NaN for none; answers: (runs, n).
-
-    See variables.SHAKEDOWN.
-    """
-    grows = np.zeros((1, 1), bool)
-    for name in ("permanent_indentation", "plastic_dissipation"):
-        values = answers[f"{name}_over_strikes"]
-        growth = np.diff(values, prepend=0.0)
-        grows = grows | ~(np.abs(growth) <= SHAKEDOWN * np.abs(values))
-    count = grows.shape[1]
-    last = count - np.argmax(grows[:, ::-1], axis=1)  # the last strike in which something grows
-    return np.where(grows[:, -1], np.nan, np.where(grows.any(axis=1), last + 1.0, 1.0))
 
 
 @functools.lru_cache(maxsize=8)
@@ -281,6 +265,8 @@ def simulate_many(
     lists = {name: _in_si(name, values) for name, values in varied.items()}
     dims, shape, columns = _combined(lists, combine)
     cases = case_table(impact, grid, duration=seconds, varied=columns)
+    if (cases["strikes"] == 1).all() and (interval := cases["strike_interval"].max()) > 0.0:
+        raise ValueError(f"strike_interval = {engineering(interval, 's')}: {NO_INTERVAL}")
     ends = {name: (min(values), max(values)) for name, values in lists.items() if len(values)}
     _warn(numbers(impact, grid) | ends)
     answers = {name: values.reshape(shape) for name, values in solve(cases).items()}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -20,11 +20,20 @@ from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.jit import FOLDER
 from impactlab.solver.kernels import is_extended, kernel_of
-from impactlab.solver.outputs import DIVERGED, SERIES, blank
+from impactlab.solver.outputs import (
+    DIVERGED,
+    EARLIER_STRIKE_UNFINISHED,
+    ENERGY_OUT_OF_BALANCE,
+    SERIES,
+    blank,
+)
 from impactlab.solver.section import FibreSection, make_section
 from impactlab.solver.several_spheres import Table, make_table
 from impactlab.solver.types import VON_KARMAN
-from impactlab.variables import BY_SPHERE, BY_STRIKE, HISTORIES
+from impactlab.variables import BY_SPHERE, BY_STRIKE, HISTORIES, NO_SHAKEDOWN, SHAKEDOWN
+
+_WHOLE_RUN = DIVERGED | ENERGY_OUT_OF_BALANCE | EARLIER_STRIKE_UNFINISHED
+"""Bits of runs without any response."""
 
 _COMPILE = """
 from dataclasses import replace
@@ -50,10 +59,11 @@ def solve(
 
     samples: length of each history (0: none). profiles: keep the fields along the beam, for which
     all cases must share nodes and points; raises ValueError where they do not, or where further
-    spheres meet what their kernel lacks. strikes: the number that all cases have, to keep what
-    solver.outputs.SERIES has of each. by_sphere: keep the answers of further spheres. Returns by
-    name, of R runs: the fields of solver.outputs.RESPONSE, (R,); histories, (R, samples); profiles,
-    (R, nodes, points), or (R, nodes) for the deflection; series, (R, strikes); of several spheres,
+    spheres meet what their kernel lacks. strikes: the largest number that a case has, or more, to
+    keep what solver.outputs.SERIES has of each (0: none). by_sphere: keep the answers of further
+    spheres. Returns by name, of R runs: the fields of solver.outputs.RESPONSE, (R,); histories,
+    (R, samples); profiles, (R, nodes, points), or (R, nodes) for the deflection; series,
+    (R, strikes), NaN beyond those of the case, and variables.OF_STRIKES; of several spheres,
     variables.BY_SPHERE, (R, spheres) or (R, spheres, samples).
     """
     if profiles and any(np.unique(cases[name]).size > 1 for name in ("nodes", "points", "rule")):
@@ -96,13 +106,48 @@ def solve(
     if samples:
         columns |= zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)
     if strikes:
-        columns |= zip(BY_STRIKE, np.moveaxis(series, 2, 0), strict=True)
+        columns |= _by_strike(cases["strikes"], columns, series)
     if further and by_sphere:
         columns |= _by_sphere(columns, further[0])
     if profiles:
         columns["plastic_strain"], columns["equivalent_plastic_strain"] = strains
         columns["deflection"] = deflection
     return columns
+
+
+def _by_strike(
+    strikes: np.ndarray[Any, Any], columns: dict[str, Any], series: np.ndarray[Any, Any]
+) -> dict[str, np.ndarray[Any, Any]]:
+    """Return the series, the strike from which on nothing grows, and the remarks on runs without.
+
+    strikes: of each run. columns: answers so far. series: (R, strikes, len(SERIES)); kernels fill
+    in none of a single strike, which is not put to rest: its answers have all but the deflection.
+    """
+    rows = np.flatnonzero(strikes == 1)
+    for place, name in enumerate(SERIES):
+        if name in columns:
+            series[rows, 0, place] = columns[name][rows]
+    answers = dict(zip(BY_STRIKE, np.moveaxis(series, 2, 0), strict=True))
+    shakedown = _shakedown(strikes, answers)
+    lost = columns["status"] & _WHOLE_RUN != 0
+    shakedown[lost] = np.nan
+    bit = np.where(np.isnan(shakedown) & ~lost, NO_SHAKEDOWN, 0)
+    return answers | {"shakedown_strike": shakedown, "remarks": columns["remarks"] | bit}
+
+
+def _shakedown(
+    strikes: np.ndarray[Any, Any], answers: Mapping[str, np.ndarray[Any, Any]]
+) -> np.ndarray[Any, Any]:
+    """Return the strike of each run from which on nothing grows, NaN for none (SHAKEDOWN)."""
+    numbers = np.arange(1, answers["permanent_indentation_over_strikes"].shape[1] + 1)
+    last = np.zeros(strikes.size)  # the last strike in which something grows
+    for name in ("permanent_indentation", "plastic_dissipation"):
+        values = answers[f"{name}_over_strikes"]
+        growth = np.diff(values, axis=1, prepend=0.0)
+        grows = ~(np.abs(growth) <= SHAKEDOWN * np.abs(values))
+        grows &= numbers <= strikes[:, np.newaxis]
+        last = np.maximum(last, np.where(grows, numbers, 0).max(axis=1))
+    return np.where(last < strikes, last + 1.0, np.nan)
 
 
 def _by_sphere(columns: dict[str, Any], table: Table) -> dict[str, np.ndarray[Any, Any]]:
@@ -113,11 +158,13 @@ def _by_sphere(columns: dict[str, Any], table: Table) -> dict[str, np.ndarray[An
     lost = table.answers["status"] & DIVERGED != 0
     further["contact_force"][lost] = np.nan
     stems = {name: name.removesuffix("_of_spheres") for name in BY_SPHERE}
-    return {
+    answers = {
         name: np.concatenate([columns[stem][:, np.newaxis], further[stem]], axis=1)
         for name, stem in stems.items()
         if stem in columns
     }
+    answers["status_of_spheres"] = answers["status_of_spheres"].astype(np.int32)
+    return answers
 
 
 def compile_kernels(

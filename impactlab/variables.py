@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _STOPPED = 256  # beside the kernels' bits: the 3-D model alone has it
+NO_SHAKEDOWN = 8192  # the same, of runs with several strikes (impactlab.solve)
 FAILURES: dict[str, tuple[int, str]] = {
     "diverged": (outputs.DIVERGED, "the run diverged; every response is missing"),
     "first_contact_unfinished": (
@@ -140,6 +141,11 @@ WARNINGS: dict[str, tuple[int, str]] = {
         "model leaves out, takes more than 2 % off the largest deflection by an estimate that is "
         "right within a factor of three: beam_model: von_karman has it, and rollers have none",
     ),
+    "no_shakedown": (
+        NO_SHAKEDOWN,
+        "the last strike still makes the dent or the dissipation in the fibres grow, or its sphere "
+        "does not leave: `shakedown_strike` is missing",
+    ),
     "skin_may_give": (
         outputs.SKIN_MAY_GIVE,
         "the contact radius is above a fifth of the outer layer's thickness, and the contact law "
@@ -229,7 +235,7 @@ BY_STRIKE = _table(
         for name, (units, long_name) in zip(outputs.SERIES, _SERIES, strict=True)
     )
 )
-"""Answers of every strike, of runs with several, by name."""
+"""Answers of every strike, of runs with several, by name; NaN beyond a run's last one."""
 _OF_EACH = "peak_force contact_duration number_of_contacts impulse permanent_indentation"
 BY_SPHERE = _table(
     *(
@@ -243,18 +249,29 @@ BY_SPHERE = _table(
 """Answers of every sphere, of runs with several, by name."""
 SHAKEDOWN = 1e-3
 """Largest growth in a strike, over what strikes have left so far, that counts as none."""
-_SHAKEDOWN = _table(
-    Variable(
-        "shakedown_strike",
-        (),
-        "1",
-        "strike from which on dent and dissipation in the fibres do not grow",
-        comment=f"from it on, either grows by at most {SHAKEDOWN:.1%} of itself per strike; NaN: "
-        "the last strike still makes it grow by more",
+OF_STRIKES = (
+    _table(
+        Variable(
+            "shakedown_strike",
+            (),
+            "1",
+            "strike from which on dent and dissipation in the fibres do not grow",
+            comment=f"from it on, either grows by at most {SHAKEDOWN:.1%} of itself per strike; "
+            "NaN: the last strike still makes it grow by more, as `remarks` says, or the run failed",
+        )
     )
+    | BY_STRIKE
 )
+"""Answers of runs with several strikes, by name."""
 COORDINATES = _table(
-    Variable("strike", ("strike",), "1", "number of the strike"),
+    Variable(
+        "strike",
+        ("strike",),
+        "1",
+        "number of the strike",
+        comment="beyond the number of strikes of a run, which `strikes` states, and from a strike "
+        "on whose sphere does not leave, answers are missing",
+    ),
     Variable("sphere", ("sphere",), "1", "number of the sphere"),
     Variable("time", ("time",), "s", "time since first touch"),
     Variable("field_time", ("field_time",), "s", "time of the fields since first touch"),
@@ -270,8 +287,8 @@ _OF_WINGS = _table(
         for name, units, long_name, comment in model.variables
     )
 )
-_AXES = HISTORIES | PROFILES | FIELDS | BY_STRIKE | BY_SPHERE | COORDINATES
-VARIABLES = RESPONSES | _OF_WINGS | _SHAKEDOWN | _AXES
+_AXES = HISTORIES | PROFILES | FIELDS | OF_STRIKES | BY_SPHERE | COORDINATES
+VARIABLES = RESPONSES | _OF_WINGS | _AXES
 """Every variable but those of bits (FLAGS) and the varied parameters (for these see PARAMETERS)."""
 
 
@@ -346,7 +363,7 @@ def answer_variables(
     scalars = {name: (lead, answers[name]) for name in responses}
     fields = {
         name: ((*lead, *entry.dims), answers[name])
-        for name, entry in (HISTORIES | PROFILES | FIELDS | BY_STRIKE | BY_SPHERE).items()
+        for name, entry in (HISTORIES | PROFILES | FIELDS | OF_STRIKES | BY_SPHERE).items()
         if name in answers
     }
     remarks = answers["remarks"].astype(np.int32)

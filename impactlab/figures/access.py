@@ -17,7 +17,7 @@ from impactlab.figures import labels
 from impactlab.model.parameters import PARAMETERS
 from impactlab.variables import FAILED, RESPONSES, of_function, reasons, status_bits
 
-SAMPLED = ("time", "field_time", "x", "z")
+SAMPLED = ("time", "field_time", "x", "z", "strike", "sphere")
 """Dimensions within a run; every other dimension of a variable of runs.nc is the design's."""
 VERDICT = "sensitivity_verdict"
 """Variable of the verdicts on sensitivity indices."""

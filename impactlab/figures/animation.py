@@ -216,7 +216,7 @@ def with_fields(run: xr.Dataset, frames: int) -> xr.Dataset:
         return run
     if _has_several_strikes(run):
         raise ValueError("animate: several strikes have no fields over time: take strikes: 1")
-    if several := [dim for dim in run.dims if dim not in ("time", "x", "z")]:
+    if several := [dim for dim in run.dims if dim not in access.SAMPLED]:
         names = ", ".join(map(str, several))
         raise ValueError(f"animate: there are several runs, on {names}: select one of them")
     if not {"velocity", "nodes", "duration"} <= run.coords.keys():

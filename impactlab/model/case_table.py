@@ -57,6 +57,8 @@ MODAL_DAMPING = (
 """End of the message that refuses it in leapfrog."""
 TOO_SOON = "must be at least the duration, which is simulated after every strike: change either"
 """Why strikes cannot follow each other so soon."""
+NO_INTERVAL = "has no effect with one strike: take it out, or set more strikes"
+"""Why there is nothing between strikes."""
 _LONGEST = 20.0
 """Largest length of a beam at rest on a foundation, over its (4 EI/k)^(1/4)."""
 _ON_NODE = 1e-6
@@ -74,7 +76,8 @@ def case_table(
     """Return the kernels' table of cases, one record (solver.types.CASE) per run; check each run.
 
     first_run: the number that messages give the first one. Raises ValueError naming the run and its
-    field when the model refuses a value.
+    field when the model refuses a value. Among runs that vary, a single strike may have a time to
+    the next, which has no effect.
     """
     positive("simulate", "duration", duration)
     varied = varied or {}
@@ -111,6 +114,7 @@ def case_table(
         ("strikes", repeated & flies(cases), NO_REST),
         ("strikes", repeated & _is_long_on_foundation(cases), STIFF_FOUNDATION),
         ("strike_interval", repeated & (interval > 0.0) & (interval < duration), TOO_SOON),
+        ("strike_interval", ~repeated & (interval > 0.0) & (not varied), NO_INTERVAL),
         (
             "damping_ratio",
             (cases["damping_ratio"] > 0.0) & (cases["scheme"] != SCHEMES.index("modal")),

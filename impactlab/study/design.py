@@ -15,8 +15,9 @@ import xarray as xr
 from impactlab.methods.grid import Grid
 from impactlab.methods.runs import listed
 from impactlab.methods.sobol import Sobol
+from impactlab.model.further_spheres import sphere_rows
 from impactlab.model.parameters import fixed_values, with_values
-from impactlab.study.schema.consistency import further_models
+from impactlab.study.schema.consistency import further_models, values_of
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy, ImpactStudy
 from impactlab.study.schema.readers import study_of_text
 from impactlab.study.solvers import run_shape
@@ -58,6 +59,7 @@ def design(study: AnyStudy, start: int = 0, stop: int | None = None) -> xr.Datas
             "profiles": int(study.store.profiles),
             "history_samples": study.store.samples,
         }
+        settings |= series_sizes(study)
         settings |= {"measurements": list(study.measurements)} if study.measurements else {}
     if study.python:
         settings |= {"solver": resolve_name("impactlab.study.solvers.own:solver_name")(study)}
@@ -77,6 +79,14 @@ def design(study: AnyStudy, start: int = 0, stop: int | None = None) -> xr.Datas
     for name, attrs in study.labels.items():
         dataset[name].attrs = {**attrs, **dataset[name].attrs, "function": study.function}
     return dataset
+
+
+def series_sizes(study: ImpactStudy) -> dict[str, int]:
+    """Return what a design says of strikes and spheres, if runs have several: their most."""
+    strikes = values_of(study.sampling, "strikes", study.impact.strikes)
+    spheres = len(sphere_rows(study.impact.further_spheres or ())) + 1
+    sizes = {"most_strikes": max(map(int, strikes)), "spheres": spheres}
+    return {name: size for name, size in sizes.items() if size > 1}
 
 
 def doubled(small: xr.Dataset) -> xr.Dataset:

@@ -21,12 +21,13 @@ from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, Value, with_values
 from impactlab.model.plausibility import implausibilities
 from impactlab.model.quantities import amount, time
+from impactlab.study.design import series_sizes
 from impactlab.study.inventory import BOUND_IT, file_stats
 from impactlab.study.schema.consistency import extremes, further_models, key_of
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy, ImpactStudy
 from impactlab.study.shard import Array
 from impactlab.validation.errors import Problem, StudyError
-from impactlab.variables import HISTORIES, PROFILES, RESPONSES
+from impactlab.variables import BY_SPHERE, HISTORIES, OF_STRIKES, PROFILES, RESPONSES
 
 MOST_TIME = 30 * 86400.0
 """Limit of the time on one core, in s: a month."""
@@ -155,10 +156,13 @@ def estimate(study: AnyStudy, folder: Path, workers: int) -> Estimate:
         sampled, largest = costs / A_SECOND, float(model.work(end)[0]) / A_SECOND
         history = study.store.samples * study.store.histories
         profile = int(end["nodes"][0] * end["points"][0]) * study.store.profiles
+        sizes = series_sizes(study)
+        strikes, spheres = sizes.get("most_strikes", 0), sizes.get("spheres", 0)
         stored = (
             parameters + len(RESPONSES) + 2 + len(HISTORIES) * history + len(PROFILES) * profile
         )
-        held = max(1, history, profile)
+        stored += len(OF_STRIKES) * strikes + spheres * (len(BY_SPHERE) + history)
+        held = max(1, history, profile, strikes, spheres * max(1, history))
         working = workers * float(model.memory(np.append(cases, end)).max())
         slow, large = _drivers(study, model, end, runs)
         doubts = implausibilities(extremes((study.impact, study.discretisation), study.sampling))

@@ -40,16 +40,23 @@ _PATIENCE = 1.0  # seconds to wait for a lock, which `holder` takes for a moment
 
 @dataclass(frozen=True)
 class OutputSpec:
-    """The output kept of each run: samples per history (0: none), and profiles or not."""
+    """The output kept of each run: samples per history (0: none), and profiles or not.
+
+    strikes: length of the series of strikes. spheres: number of spheres whose answers are kept. (0:
+    none, as of runs of one strike and one sphere).
+    """
 
     samples: int
     profiles: bool
+    strikes: int = 0
+    spheres: int = 0
 
     @staticmethod
     def of(design: xr.Dataset) -> OutputSpec:
         """Return the output that a design asks for."""
         samples = int(design.attrs["history_samples"]) if design.attrs["histories"] else 0
-        return OutputSpec(samples, bool(design.attrs["profiles"]))
+        counts = (int(design.attrs.get(name, 0)) for name in ("most_strikes", "spheres"))
+        return OutputSpec(samples, bool(design.attrs["profiles"]), *counts)
 
 
 def run_keys(cases: Array, output: OutputSpec, version: str) -> Array:

@@ -14,7 +14,7 @@ from impactlab.methods.distributions import Choice, Distribution
 from impactlab.methods.grid import Grid
 from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
-from impactlab.model.case_table import MODAL_DAMPING, TOO_SOON, between_nodes
+from impactlab.model.case_table import MODAL_DAMPING, NO_INTERVAL, TOO_SOON, between_nodes
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
 from impactlab.model.further_spheres import LEAPFROG_ALONE, sphere_rows
 from impactlab.model.impact import (
@@ -249,7 +249,9 @@ def _several_strikes(file: StudyFile, ends: Extremes) -> Reasons:
     """Check that strikes wait for those before, and that further spheres have node and scheme."""
     sampling, grid = file.sampling, file.discretisation[0]
     interval = ends.get("strike_interval", (file.duration,))[0]
-    if ends["strikes"][1] > 1 and interval < file.duration:
+    if ends["strikes"][1] == 1 and "strike_interval" in ends:
+        yield key_of("strike_interval", sampling), NO_INTERVAL
+    elif interval < file.duration:
         value = shown("strike_interval", interval, "s")
         yield key_of("strike_interval", sampling), f"{value} {TOO_SOON}"
     spheres, key = sphere_rows(file.impact.further_spheres or ()), "impact.further_spheres"

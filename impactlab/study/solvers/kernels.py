@@ -22,7 +22,9 @@ from impactlab.study.shard import Array
 from impactlab.study.solvers import Solver, flattened, run_number, run_shape
 from impactlab.study.store import OutputSpec
 from impactlab.variables import (
+    BY_SPHERE,
     HISTORIES,
+    OF_STRIKES,
     PROFILES,
     RESPONSES,
     answer_variables,
@@ -38,11 +40,21 @@ _BESIDE_SPHERES = ("strike_position", "support_left", "support_right")
 
 
 def columns(design: xr.Dataset) -> tuple[str, ...]:
-    """Return the names of the requested responses, their flags, and histories and profiles kept."""
-    output = OutputSpec.of(design)
+    """Return the names of the requested responses, their flags, and of what is kept beside them."""
+    return (*listed(design, "responses"), "status", "remarks", *kept(OutputSpec.of(design)))
+
+
+def kept(output: OutputSpec) -> tuple[str, ...]:
+    """Return the names of histories and profiles kept, and of answers by strike and by sphere."""
     histories = HISTORIES if output.samples else ()
     profiles = PROFILES if output.profiles else ()
-    return (*listed(design, "responses"), "status", "remarks", *histories, *profiles)
+    strikes = OF_STRIKES if output.strikes else ()
+    spheres = [
+        name
+        for name, entry in (BY_SPHERE if output.spheres else {}).items()
+        if output.samples or "time" not in entry.dims
+    ]
+    return (*histories, *profiles, *strikes, *spheres)
 
 
 def cases(design: xr.Dataset, runs: Array) -> Array:
@@ -54,9 +66,11 @@ def cases(design: xr.Dataset, runs: Array) -> Array:
 
 
 def values(cases: Array, output: OutputSpec) -> int:
-    """Count the responses, histories and profiles of a run; all have the first one's mesh."""
+    """Count the responses of a run and what is kept beside them; all have the first one's mesh."""
     profile = int(cases[0].nodes) * int(cases[0].points) if output.profiles else 0
-    return len(RESPONSES) + len(HISTORIES) * output.samples + len(PROFILES) * profile
+    by_sphere = output.spheres * (len(BY_SPHERE) + output.samples)
+    numbers = len(RESPONSES) + len(HISTORIES) * output.samples + len(PROFILES) * profile
+    return numbers + len(OF_STRIKES) * output.strikes + by_sphere
 
 
 def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
@@ -71,6 +85,9 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
     if output.samples:
         times = np.linspace(0.0, design["duration"].item(), output.samples)
         dataset = dataset.assign_coords(time=times)
+    for name, size in (("strike", output.strikes), ("sphere", output.spheres)):
+        if size:
+            dataset = dataset.assign_coords({name: np.arange(1.0, size + 1.0)})
     if output.profiles:
         dataset = dataset.assign_coords(profile_coordinates(*base(design)))
     return described(dataset.assign_attrs(provenance()))
@@ -117,7 +134,13 @@ SOLVER = Solver(
     cases=cases,
     cost=lambda cases: work(cases) + _OF_ANY_RUN,  # in node-steps of the paper's beam
     values=values,
-    solve=lambda cases, form: solve(cases, samples=form.samples, profiles=form.profiles),
+    solve=lambda cases, form: solve(
+        cases,
+        samples=form.samples,
+        profiles=form.profiles,
+        strikes=form.strikes,
+        by_sphere=form.spheres > 0,
+    ),
     prepare=prepare,
     labelled=labelled,
 )

@@ -30,8 +30,9 @@ from impactlab.study.shard import Array, Columns
 from impactlab.study.solvers import Solver, flattened, on_design
 from impactlab.study.solvers.fingerprint import fingerprint
 from impactlab.study.solvers.kernels import SOLVER as IMPACT
+from impactlab.study.solvers.kernels import kept
 from impactlab.study.store import OutputSpec
-from impactlab.variables import FLAGS, HISTORIES, PROFILES, RESPONSES
+from impactlab.variables import FLAGS, RESPONSES
 
 _COST = 3e6  # cost of calling functions once, about 10 ms
 
@@ -244,15 +245,21 @@ def _responses(task: Task, cases: Array, output: OutputSpec) -> Columns:
             for name, entry in PARAMETERS.items()
             if name in (cases.dtype.names or ()) and name not in (*SECTION, *WORDS)
         } | section_values(case)
-        values["strike_interval"] = values["strike_interval"] or None
+        repeated = values["strikes"] > 1  # among others, a single strike may have an interval
+        values["strike_interval"] = (repeated and values["strike_interval"]) or None
         values["further_spheres"] = case["further_spheres"][: case["further"]].tolist() or None
         impact, grid = with_values(paper_impact(), Discretisation(), values)
         with warnings.catch_warnings():  # told before
             warnings.simplefilter("ignore")
-            run = run_dataset(impact, grid, duration=case["duration"].item(), samples=task.samples)
-        row: dict[str, Any] = {name: run[name].values for name in (*RESPONSES, *FLAGS)}
-        row |= {name: run[name].values for name in HISTORIES if output.samples}
-        row |= {name: run[name].values for name in PROFILES if output.profiles}
+            run = run_dataset(
+                impact,
+                grid,
+                duration=case["duration"].item(),
+                samples=task.samples,
+                strikes=output.strikes,
+            )
+        names = (*RESPONSES, *FLAGS, *kept(output))
+        row: dict[str, Any] = {name: run[name].values for name in names}
         for name, function in task.functions.items():
             value = _number(function, f"responses.{name}", run)
             row[name] = _real(value, f"responses.{name}")
