@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -30,10 +30,12 @@ from impactlab.solver.outputs import (
 from impactlab.solver.section import FibreSection, make_section
 from impactlab.solver.several_spheres import Table, make_table
 from impactlab.solver.types import VON_KARMAN
-from impactlab.variables import BY_SPHERE, BY_STRIKE, HISTORIES, NO_SHAKEDOWN, SHAKEDOWN
+from impactlab.variables import BY_SPHERE, BY_STRIKE, GROWING, HISTORIES, NO_GROWTH, WARNINGS
 
 _WHOLE_RUN = DIVERGED | ENERGY_OUT_OF_BALANCE | EARLIER_STRIKE_UNFINISHED
 """Bits of runs without any response."""
+_ROUND_OFF = 1e-12
+"""Growth that is none, in m or J: of a beam at rest to which nothing happened."""
 
 _COMPILE = """
 from dataclasses import replace
@@ -118,7 +120,7 @@ def solve(
 def _by_strike(
     strikes: np.ndarray[Any, Any], columns: dict[str, Any], series: np.ndarray[Any, Any]
 ) -> dict[str, np.ndarray[Any, Any]]:
-    """Return the series, the strike from which on nothing grows, and the remarks on runs without.
+    """Return the series, the strikes from which on nothing grows, and the remarks on runs without.
 
     strikes: of each run. columns: answers so far. series: (R, strikes, len(SERIES)); kernels fill
     in none of a single strike, which is not put to rest: its answers have all but the deflection.
@@ -128,23 +130,27 @@ def _by_strike(
         if name in columns:
             series[rows, 0, place] = columns[name][rows]
     answers = dict(zip(BY_STRIKE, np.moveaxis(series, 2, 0), strict=True))
-    shakedown = _shakedown(strikes, answers)
-    lost = columns["status"] & _WHOLE_RUN != 0
-    shakedown[lost] = np.nan
-    bit = np.where(np.isnan(shakedown) & ~lost, NO_SHAKEDOWN, 0)
-    return answers | {"shakedown_strike": shakedown, "remarks": columns["remarks"] | bit}
+    lost, remarks = columns["status"] & _WHOLE_RUN != 0, columns["remarks"].copy()
+    for name, (quantities, flag) in GROWING.items():
+        values = [answers[f"{quantity}_over_strikes"] for quantity in quantities]
+        first = _first_without_growth(strikes, values)
+        answers[name] = np.where(lost, np.nan, first)
+        remarks |= np.where(np.isnan(first) & ~lost, WARNINGS[flag][0], 0)
+    return answers | {"remarks": remarks}
 
 
-def _shakedown(
-    strikes: np.ndarray[Any, Any], answers: Mapping[str, np.ndarray[Any, Any]]
+def _first_without_growth(
+    strikes: np.ndarray[Any, Any], series: Iterable[np.ndarray[Any, Any]]
 ) -> np.ndarray[Any, Any]:
-    """Return the strike of each run from which on nothing grows, NaN for none (SHAKEDOWN)."""
-    numbers = np.arange(1, answers["permanent_indentation_over_strikes"].shape[1] + 1)
+    """Return the strike of each run from which on nothing grows, NaN for none (NO_GROWTH).
+
+    strikes: of each run. series: of what may grow, (R, strikes) each.
+    """
     last = np.zeros(strikes.size)  # the last strike in which something grows
-    for name in ("permanent_indentation", "plastic_dissipation"):
-        values = answers[f"{name}_over_strikes"]
-        growth = np.diff(values, axis=1, prepend=0.0)
-        grows = ~(np.abs(growth) <= SHAKEDOWN * np.abs(values))
+    for values in series:
+        numbers = np.arange(1, values.shape[1] + 1)
+        growth = np.abs(np.diff(values, axis=1, prepend=0.0))
+        grows = ~(growth <= NO_GROWTH * np.abs(values) + _ROUND_OFF)  # NaN: may grow
         grows &= numbers <= strikes[:, np.newaxis]
         last = np.maximum(last, np.where(grows, numbers, 0).max(axis=1))
     return np.where(last < strikes, last + 1.0, np.nan)

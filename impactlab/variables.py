@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _STOPPED = 256  # beside the kernels' bits: the 3-D model alone has it
-NO_SHAKEDOWN = 8192  # the same, of runs with several strikes (impactlab.solve)
+_NO_SHAKEDOWN, _NOT_STEADY = 8192, 16384  # the same, of runs with several strikes
 FAILURES: dict[str, tuple[int, str]] = {
     "diverged": (outputs.DIVERGED, "the run diverged; every response is missing"),
     "first_contact_unfinished": (
@@ -142,9 +142,14 @@ WARNINGS: dict[str, tuple[int, str]] = {
         "right within a factor of three: beam_model: von_karman has it, and rollers have none",
     ),
     "no_shakedown": (
-        NO_SHAKEDOWN,
+        _NO_SHAKEDOWN,
         "the last strike still makes the dent or the dissipation in the fibres grow, or its sphere "
         "does not leave: `shakedown_strike` is missing",
+    ),
+    "not_steady": (
+        _NOT_STEADY,
+        "the last strike still makes the dent or the residual deflection grow, or its sphere "
+        "does not leave: `steady_strike` is missing",
     ),
     "skin_may_give": (
         outputs.SKIN_MAY_GIVE,
@@ -247,21 +252,31 @@ BY_SPHERE = _table(
     Variable("status_of_spheres", ("sphere",), "1", "why responses are missing, by sphere"),
 )
 """Answers of every sphere, of runs with several, by name."""
-SHAKEDOWN = 1e-3
+NO_GROWTH = 1e-3
 """Largest growth in a strike, over what strikes have left so far, that counts as none."""
-OF_STRIKES = (
-    _table(
+GROWING = {
+    "steady_strike": (("permanent_indentation", "residual_deflection"), "not_steady"),
+    "shakedown_strike": (("permanent_indentation", "plastic_dissipation"), "no_shakedown"),
+}
+"""Strikes from which on something does not grow: what, and the flag of `remarks` without one."""
+_WITHOUT_GROWTH = _table(
+    *(
         Variable(
-            "shakedown_strike",
+            name,
             (),
             "1",
-            "strike from which on dent and dissipation in the fibres do not grow",
-            comment=f"from it on, either grows by at most {SHAKEDOWN:.1%} of itself per strike; "
-            "NaN: the last strike still makes it grow by more, as `remarks` says, or the run failed",
+            f"strike from which on {what} do not grow",
+            comment=f"from it on, either changes by at most {NO_GROWTH:.1%} of itself per strike; "
+            "NaN: the last strike still changes it by more, as `remarks` says, or the run failed",
+        )
+        for name, what in zip(
+            GROWING,
+            ("dent and residual deflection", "dent and dissipation in the fibres"),
+            strict=True,
         )
     )
-    | BY_STRIKE
 )
+OF_STRIKES = _WITHOUT_GROWTH | BY_STRIKE
 """Answers of runs with several strikes, by name."""
 COORDINATES = _table(
     Variable(

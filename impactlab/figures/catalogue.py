@@ -15,12 +15,14 @@ from impactlab.figures import (
     measures,
     samples,
     single_runs,
+    strikes,
 )
-from impactlab.figures.record import Figure
+from impactlab.figures.record import LEAD, Figure
 from impactlab.methods import FAMILIES
 from impactlab.variables import of_function
 
 ANSWERS = (
+    strikes.strike_series,
     grids.contact_laws,
     single_runs.first_contact,
     single_runs.force_history,
@@ -76,8 +78,6 @@ _LEADING = (
     "response_distributions",
 )
 """Figures of a panel per response whose panel of the headline's response leads a report."""
-LEAD = "lead"
-"""Name of the figure that shows the response of the answer's headline alone."""
 _PANELS = 2
 """Most panels of a figure that leads a report as it is."""
 
@@ -116,4 +116,6 @@ def applicable(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Figure]:
     figures = {figure.name: figure for figure in everything if figure.applies(runs, analysis)}
     first = next((figures[name] for name in _LEADING if name in figures), None)
     lead = [_lead(runs, analysis, first)] if first else []
+    if strikes.strike_series.name in figures:  # what the headline is about
+        lead = [strikes.accumulated_dent]
     return {figure.name: figure for figure in lead if figure.applies(runs, analysis)} | figures

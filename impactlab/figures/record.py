@@ -15,6 +15,8 @@ from matplotlib.figure import Figure as Drawing
 from impactlab.figures import style
 
 CAPTIONS = "captions.json"
+LEAD = "lead"
+"""Name of the figure that shows what the answer's headline is about, alone."""
 Drawer = Callable[[xr.Dataset, xr.Dataset], Drawing]
 
 

@@ -25,10 +25,10 @@ from impactlab.figures import (
     scales,
     style,
 )
-from impactlab.figures.catalogue import LEAD
 from impactlab.figures.grids import parameter_axis
 from impactlab.figures.labels import Display, display
 from impactlab.figures.panel import name_places
+from impactlab.figures.record import LEAD
 from impactlab.methods.record import Family
 
 _THICK = 0.78  # thickness of all bars of a row together, in rows

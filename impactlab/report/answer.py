@@ -16,7 +16,7 @@ from impactlab.figures.measures import analysed
 from impactlab.figures.needs import ORDERED, Needs, needed
 from impactlab.methods.record import Family
 from impactlab.model.parameters import PARAMETERS
-from impactlab.report import effects, measured, ranking
+from impactlab.report import effects, measured, ranking, strikes
 from impactlab.report.distribution import limit_entries, regime_entries
 from impactlab.report.page import Entry
 from impactlab.report.sensitivity import history_entries, shared, uncertainty
@@ -88,13 +88,19 @@ def entries(runs: xr.Dataset, analysis: xr.Dataset | None) -> tuple[str, list[li
     shown = _stated(runs)
     if not shown:
         return "There is no answer in these runs", [], ""
+    series = strikes.entries(runs)
     if (families := measures.families(runs, analysis)) and analysed(runs, analysis):
         headline, findings, note = _of_sample(runs, analysis, families)
+        findings += series[:1]
     elif (needs := needed(runs, analysis)) and not _effects_lead(runs):
         headline, findings = _convergence(needs, access.leading(runs, [*needs.errors]))
         note = "± the difference to the finest grid and the numerical uncertainty of that grid."
+        findings += series[:1]
     else:
         headline, findings, note = _of_grid(runs, analysis, shown, needs)
+        if series:
+            findings = [*series[1:], ("Last strike", headline), *findings]
+            headline = series[0][1]
     first: list[Entry] = []
     if limits := limit_entries(runs, analysis):
         level, even = access.confidence(analysis), spread_evenly(runs)

@@ -12,7 +12,7 @@ import xarray as xr
 
 from impactlab.analysis.differences import METHOD
 from impactlab.figures import access, labels
-from impactlab.figures.catalogue import LEAD
+from impactlab.figures.record import LEAD
 from impactlab.figures.studies import (
     StudyResults,
     common_display,

@@ -22,9 +22,8 @@ from ruamel.yaml import YAML
 
 from impactlab.figures import labels
 from impactlab.figures.animation import FILE
-from impactlab.figures.catalogue import LEAD
 from impactlab.figures.needs import REFINED
-from impactlab.figures.record import listed
+from impactlab.figures.record import LEAD, listed
 from impactlab.files import identity, replaced
 from impactlab.methods import FAMILIES
 

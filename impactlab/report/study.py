@@ -19,7 +19,7 @@ from impactlab.figures.samples import scatter
 from impactlab.methods import NO_DISTRIBUTION
 from impactlab.methods.distributions import distribution_of
 from impactlab.methods.runs import correlations
-from impactlab.report import distribution, measured, sensitivity
+from impactlab.report import distribution, measured, sensitivity, strikes
 from impactlab.report.answer import entries
 from impactlab.report.cautions import beside, cautions, endings, notes
 from impactlab.report.convergence import convergence
@@ -99,6 +99,7 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
             *convergence(runs, analysis),
             *measured.sections(runs, analysis),
             *(section for model in further for section in model.part("sections")(runs, analysis)),
+            *strikes.sections(runs, _place),
             Section("results", "Results", tables=[ranges]),
             _outcome(runs, analysis),
             inputs,
@@ -113,6 +114,7 @@ def _sections(runs: xr.Dataset, analysis: xr.Dataset) -> list[Section]:
         *sensitivity.sections(runs, analysis),
         *sensitivity.numerical_sections(runs, analysis),
         *measured.sections(runs, analysis),
+        *strikes.sections(runs, _place),
         Section(
             "results",
             "Distribution of each response",

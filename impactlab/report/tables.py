@@ -20,7 +20,7 @@ from impactlab.files import replaced
 from impactlab.methods import FAMILIES, INDICES
 from impactlab.report.answer import answers
 from impactlab.validation.errors import unknown
-from impactlab.variables import FLAGS, MARKED, status_bits
+from impactlab.variables import FLAGS, GROWING, MARKED, status_bits
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -124,6 +124,8 @@ def _of_runs(runs: xr.Dataset, names: list[str]) -> Columns:
     for name in names:
         values = access.usable(runs, name)
         columns[name] = _labelled(values.assign_attrs(runs[name].attrs), labels.title(name))
+    for name in GROWING if "strike" in runs.dims else ():
+        columns[name] = _labelled(access.usable(runs, name), labels.title(name))
     for name, bits in (("status", status_bits(names) | MARKED), ("remarks", -1)):
         if name in runs and bool((flags := runs[name] & bits).any()):
             columns[name] = _labelled(_named(flags, name), labels.title(name))

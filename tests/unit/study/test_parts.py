@@ -47,7 +47,30 @@ sampling:
     contact: {distribution: choice, values: [hertz, mjg, brake]}
 responses: [peak_force]
 """
-STUDIES = {"function": FUNCTION, "grid": GRID, "words": WORDS}
+STRIKES = """
+title: Strikes
+impact: {base: paper, contact: finite_element}
+discretisation: {nodes: 11, points: 3, scheme: modal}
+duration: 12 ms
+sampling: {method: grid, parameters: {velocity: [0.5, 1, 2, 3], strikes: [3, 1, 5]}}
+responses: [peak_force]
+"""
+SPHERES = """
+title: Spheres
+impact: {base: paper, further_spheres: [{strike_position: 0.3, velocity: 2 m/s}]}
+discretisation: {nodes: 11, points: 3}
+duration: 0.3 ms
+sampling: {method: grid, parameters: {velocity: [0.5, 1, 2], gravity: [0, 1, 2, 3]}}
+responses: [peak_force]
+store: {histories: true, samples: 7}
+"""
+STUDIES = {
+    "function": FUNCTION,
+    "grid": GRID,
+    "words": WORDS,
+    "strikes": STRIKES,
+    "spheres": SPHERES,
+}
 RUNS = "results/{0}/runs.nc"
 
 

@@ -176,9 +176,10 @@ def test_every_parameter_can_be_varied(read, grid):
     beams = {"beam_shape": square, "beam_wall_thickness": square}
     beams |= {"beam_flange_thickness": i, "beam_web_thickness": i}
     for name, value in values.items():
-        study = read(
-            grid({"sampling.parameters": {name: [value]}, "impact.beam": beams.get(name, {})})
-        )
+        impact = {"strikes": 2} if name == "strike_interval" else {}
+        impact |= {"beam": beams.get(name, {})}
+        changes = {f"impact.{key}": entry for key, entry in impact.items()}
+        study = read(grid({"sampling.parameters": {name: [value]}} | changes))
         assert study.sampling.parameters == {name: (value,)}
 
 
