@@ -22,7 +22,9 @@ SIZES = {"sobol": {"base_samples": 64}, "morris": {"trajectories": 16}, "fast": 
 """Sizes of the samples, by method; of the others, 128 runs."""
 STORED = (
     "A grid of nodes, time steps and points with `store: {histories: true}`; a sample has the "
-    "one dimension `run`. `store: {profiles: true}` adds the fields on `x` and `z` of `simulate`."
+    "one dimension `run`. `store: {profiles: true}` adds the fields on `x` and `z` of `simulate`; "
+    "several strikes or spheres add what it has on `strike` and `sphere`, and the strikes from "
+    "which on nothing grows."
 )
 MEANINGS = {name: entry.long_name for name, entry in PARAMETERS.items()} | {
     "asked": "True for a response that has to meet the tolerance",

@@ -23,6 +23,7 @@ from impactlab.model.plausibility import (
 )
 from impactlab.model.quantities import Quantity, as_text, engineering, in_si
 from impactlab.model.quantities import duration as duration_of
+from impactlab.provenance import provenance
 from impactlab.solve import fibre_section, profile_coordinates, solve
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.stability import discretise
@@ -32,7 +33,6 @@ from impactlab.variables import (
     VARIABLES,
     answer_variables,
     described,
-    provenance,
 )
 
 if TYPE_CHECKING:
@@ -71,8 +71,9 @@ def simulate(
         give is NaN, and `status` says why; `remarks` qualifies the others. With several strikes,
         each of which takes the duration, histories are those of the last one, `deflection` is that
         at rest, what each strike left is on `strike` (NaN from the one that failed on), and
-        `shakedown_strike` says from which on nothing grows. With several spheres, scalars are those
-        of the first, and those of all are on `sphere`, with a status of their own.
+        `steady_strike` and `shakedown_strike` say from which on nothing grows. With several
+        spheres, scalars are those of the first, and those of all are on `sphere`, with a status of
+        their own.
 
     Raises
     ------

@@ -25,7 +25,7 @@ from impactlab.fem3d.solver.system import refuse_rate
 from impactlab.model.checks import integer, positive
 from impactlab.model.impact import Impact
 from impactlab.model.material import Material
-from impactlab.variables import provenance
+from impactlab.provenance import provenance
 
 ELEMENT, LAW = "SmallDisplacementBbarElement3D8N", "SmallStrainJ2Plasticity3DLaw"
 TIME_STEP, PENALTY = 8e-6, 1e15  # s, and N/m3 (1e6 N/mm3)

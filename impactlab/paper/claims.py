@@ -22,8 +22,8 @@ from impactlab.figures.record import Figure
 from impactlab.files import check_source, read_netcdf, replaced
 from impactlab.paper.statements import judge_all
 from impactlab.paper.statements.statement import Assessment, Ruling, Statement, Subject
+from impactlab.provenance import provenance as made_now
 from impactlab.report.page import Cell, Row, Table, pictures, provenance, write_page
-from impactlab.variables import provenance as made_now
 
 log = logging.getLogger(__name__)
 

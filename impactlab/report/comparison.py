@@ -25,12 +25,13 @@ from impactlab.files import read_netcdf, write_netcdf
 from impactlab.methods.record import Family, Measure
 from impactlab.model.checks import did_you_mean
 from impactlab.model.parameters import PARAMETERS
+from impactlab.provenance import provenance
 from impactlab.report import changes
 from impactlab.report.answer import answers
 from impactlab.report.page import Cell, Row, Section, Table, described, pictures, write_page
 from impactlab.report.results import COMPARISON, RUNS, open_stored, stored_files
 from impactlab.study.schema.yaml_file import read_mapping
-from impactlab.variables import of_function, provenance
+from impactlab.variables import of_function
 
 _UNCOMPARED = ("title", "description")
 _ABSENT = "–"

@@ -19,6 +19,7 @@ from impactlab.methods.distributions import Choice
 from impactlab.methods.hypercube import Hypercube
 from impactlab.methods.runs import in_order, listed, usable
 from impactlab.methods.sampling import RandomSample
+from impactlab.provenance import provenance
 from impactlab.solver.contact import LAWS
 from impactlab.study import CALIBRATION, steps
 from impactlab.study.engine import Engine
@@ -29,7 +30,6 @@ from impactlab.study.schema.measurement_files import MeasurementSource, read_mea
 from impactlab.study.schema.readers import of_impacts, study_of_content
 from impactlab.study.schema.yaml_file import read_mapping
 from impactlab.validation.errors import Problem, StudyError, unknown
-from impactlab.variables import provenance
 
 CONFIRMING = "confirming"
 """Folder in that of calibration, of the runs that confirm."""

@@ -355,9 +355,9 @@ def analyse_runs(
 
 def check(verification: Verification) -> xr.Dataset:
     """Make every check, also after one that ends in an error; return findings.nc."""
+    from impactlab.provenance import provenance
     from impactlab.solver.jit import SOURCES_HASH
     from impactlab.study.progress import items_done
-    from impactlab.variables import provenance
     from impactlab.verification.catalogue import CATALOGUE
     from impactlab.verification.outcomes import packed
 

@@ -10,12 +10,12 @@ import pytest
 import xarray as xr
 
 import impactlab as il
-from impactlab import variables as dataset
+from impactlab import provenance as source
 from impactlab.model.parameters import PARAMETERS
+from impactlab.provenance import provenance
 from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.variables import (
     BY_SPHERE,
-    BY_STRIKE,
     COORDINATES,
     FAILED,
     FAILURES,
@@ -23,20 +23,22 @@ from impactlab.variables import (
     HISTORIES,
     MARKED,
     MARKS,
+    OF_STRIKES,
     PROFILES,
     RESPONSES,
     STATUS_FLAGS,
     WARNINGS,
     attributes,
     described,
-    provenance,
     reasons,
     status_bits,
 )
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
-TABLE = RESPONSES | HISTORIES | PROFILES | FIELDS | BY_STRIKE | BY_SPHERE | COORDINATES | PARAMETERS
+TABLE = (
+    RESPONSES | HISTORIES | PROFILES | FIELDS | OF_STRIKES | BY_SPHERE | COORDINATES | PARAMETERS
+)
 BITS = {name: bit for name, (bit, _) in STATUS_FLAGS.items()}
 WHOLE_RUN = {"diverged", "energy_out_of_balance", "earlier_strike_unfinished", "stopped"}
 
@@ -50,7 +52,16 @@ def test_units_are_udunits_and_names_are_spelled_out(name):
 
 
 def test_no_name_is_used_twice():
-    tables = (RESPONSES, HISTORIES, PROFILES, FIELDS, BY_STRIKE, BY_SPHERE, COORDINATES, PARAMETERS)
+    tables = (
+        RESPONSES,
+        HISTORIES,
+        PROFILES,
+        FIELDS,
+        OF_STRIKES,
+        BY_SPHERE,
+        COORDINATES,
+        PARAMETERS,
+    )
     assert sum(map(len, tables)) == len(TABLE)
     # an unknown variable is an error
     with pytest.raises(KeyError, match="contact_farce"):
@@ -147,7 +158,7 @@ def test_provenance_names_versions_time_and_machine():
 @pytest.fixture
 def source_tree(tmp_path, monkeypatch):
     """The package as if it lay in a folder of its own."""
-    monkeypatch.setattr(dataset, "__file__", str(tmp_path / "impactlab" / "variables.py"))
+    monkeypatch.setattr(source, "__file__", str(tmp_path / "impactlab" / "variables.py"))
     (tmp_path / "impactlab").mkdir()
     return tmp_path
 
@@ -168,7 +179,7 @@ def test_source_revision_is_the_commit_and_says_when_the_tree_differs(source_tre
     assert provenance()["source_revision"] == commit
     file.write_text("another")
     assert provenance()["source_revision"] == commit  # what this process has loaded
-    dataset._of_this_process.cache_clear()
+    source._of_this_process.cache_clear()
     assert provenance()["source_revision"] == f"{commit}-dirty"
 
 

@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 
 from impactlab.files import write_netcdf
-from impactlab.variables import provenance
+from impactlab.provenance import provenance
 from impactlab.verification.finding import Comparisons, Finding, Outcome
 from impactlab.verification.outcomes import packed
 

@@ -21,8 +21,9 @@ from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, SECTION, flatten
+from impactlab.provenance import provenance
 from impactlab.types import Floats
-from impactlab.variables import described, provenance
+from impactlab.variables import described
 
 
 def solve(

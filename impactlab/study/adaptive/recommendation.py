@@ -35,6 +35,7 @@ from impactlab.model.case_table import case_table
 from impactlab.model.cost import node_steps
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import Value, flatten, with_values
+from impactlab.provenance import provenance
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
@@ -42,7 +43,7 @@ from impactlab.study.schema.declarations import Auto, ImpactStudy
 from impactlab.study.store import locked
 from impactlab.types import Floats
 from impactlab.validation.errors import Problem, StudyError
-from impactlab.variables import described, provenance
+from impactlab.variables import described
 
 AXES = ("nodes", "points", "courant")
 _ALL = 4  # most numbers of which all corners are taken

@@ -12,9 +12,10 @@ import xarray as xr
 
 from impactlab import wings
 from impactlab.methods.runs import listed
+from impactlab.provenance import provenance
 from impactlab.study.shard import Array, Columns
 from impactlab.study.store import OutputSpec
-from impactlab.variables import attributes, provenance
+from impactlab.variables import attributes
 
 
 def run_shape(design: xr.Dataset) -> tuple[tuple[str, ...], tuple[int, ...]]:

@@ -14,6 +14,7 @@ from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, SECTION, with_values
+from impactlab.provenance import provenance
 from impactlab.solve import compile_kernels, profile_coordinates, solve
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.switch import DAMPED
@@ -29,7 +30,6 @@ from impactlab.variables import (
     RESPONSES,
     answer_variables,
     described,
-    provenance,
     status_bits,
 )
 
