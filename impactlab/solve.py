@@ -18,24 +18,14 @@ from impactlab.model.section import fibre_table
 from impactlab.solver import BEAM_MODELS, BENDING_MODELS, SCHEMES
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
+from impactlab.solver.growth import by_strike
 from impactlab.solver.jit import FOLDER
 from impactlab.solver.kernels import is_extended, kernel_of
-from impactlab.solver.outputs import (
-    DIVERGED,
-    EARLIER_STRIKE_UNFINISHED,
-    ENERGY_OUT_OF_BALANCE,
-    SERIES,
-    blank,
-)
+from impactlab.solver.outputs import DIVERGED, SERIES, blank
 from impactlab.solver.section import FibreSection, make_section
 from impactlab.solver.several_spheres import Table, make_table
 from impactlab.solver.types import VON_KARMAN
-from impactlab.variables import BY_SPHERE, BY_STRIKE, GROWING, HISTORIES, NO_GROWTH, WARNINGS
-
-_WHOLE_RUN = DIVERGED | ENERGY_OUT_OF_BALANCE | EARLIER_STRIKE_UNFINISHED
-"""Bits of runs without any response."""
-_ROUND_OFF = 1e-12
-"""Growth that is none, in m or J: of a beam at rest to which nothing happened."""
+from impactlab.variables import BY_SPHERE, HISTORIES
 
 _COMPILE = """
 from dataclasses import replace
@@ -108,52 +98,13 @@ def solve(
     if samples:
         columns |= zip(HISTORIES, np.moveaxis(histories, 1, 0), strict=True)
     if strikes:
-        columns |= _by_strike(cases["strikes"], columns, series)
+        columns |= by_strike(cases, columns, series)
     if further and by_sphere:
         columns |= _by_sphere(columns, further[0])
     if profiles:
         columns["plastic_strain"], columns["equivalent_plastic_strain"] = strains
         columns["deflection"] = deflection
     return columns
-
-
-def _by_strike(
-    strikes: np.ndarray[Any, Any], columns: dict[str, Any], series: np.ndarray[Any, Any]
-) -> dict[str, np.ndarray[Any, Any]]:
-    """Return the series, the strikes from which on nothing grows, and the remarks on runs without.
-
-    strikes: of each run. columns: answers so far. series: (R, strikes, len(SERIES)); kernels fill
-    in none of a single strike, which is not put to rest: its answers have all but the deflection.
-    """
-    rows = np.flatnonzero(strikes == 1)
-    for place, name in enumerate(SERIES):
-        if name in columns:
-            series[rows, 0, place] = columns[name][rows]
-    answers = dict(zip(BY_STRIKE, np.moveaxis(series, 2, 0), strict=True))
-    lost, remarks = columns["status"] & _WHOLE_RUN != 0, columns["remarks"].copy()
-    for name, (quantities, flag) in GROWING.items():
-        values = [answers[f"{quantity}_over_strikes"] for quantity in quantities]
-        first = _first_without_growth(strikes, values)
-        answers[name] = np.where(lost, np.nan, first)
-        remarks |= np.where(np.isnan(first) & ~lost, WARNINGS[flag][0], 0)
-    return answers | {"remarks": remarks}
-
-
-def _first_without_growth(
-    strikes: np.ndarray[Any, Any], series: Iterable[np.ndarray[Any, Any]]
-) -> np.ndarray[Any, Any]:
-    """Return the strike of each run from which on nothing grows, NaN for none (NO_GROWTH).
-
-    strikes: of each run. series: of what may grow, (R, strikes) each.
-    """
-    last = np.zeros(strikes.size)  # the last strike in which something grows
-    for values in series:
-        numbers = np.arange(1, values.shape[1] + 1)
-        growth = np.abs(np.diff(values, axis=1, prepend=0.0))
-        grows = ~(growth <= NO_GROWTH * np.abs(values) + _ROUND_OFF)  # NaN: may grow
-        grows &= numbers <= strikes[:, np.newaxis]
-        last = np.maximum(last, np.where(grows, numbers, 0).max(axis=1))
-    return np.where(last < strikes, last + 1.0, np.nan)
 
 
 def _by_sphere(columns: dict[str, Any], table: Table) -> dict[str, np.ndarray[Any, Any]]:

@@ -12,13 +12,13 @@ from impactlab import wings
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver import outputs
 from impactlab.solver.contact import CONTACT_LAWS
+from impactlab.solver.growth import GROWING, NO_GROWTH
 from impactlab.solver.outputs import SHORT_PAUSE as SHORT_PAUSE
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _STOPPED = 256  # beside the kernels' bits: the 3-D model alone has it
-_NO_SHAKEDOWN, _NOT_STEADY = 8192, 16384  # the same, of runs with several strikes
 FAILURES: dict[str, tuple[int, str]] = {
     "diverged": (outputs.DIVERGED, "the run diverged; every response is missing"),
     "first_contact_unfinished": (
@@ -134,12 +134,12 @@ WARNINGS: dict[str, tuple[int, str]] = {
         "right within a factor of three: beam_model: von_karman has it, and rollers have none",
     ),
     "no_shakedown": (
-        _NO_SHAKEDOWN,
+        outputs.NO_SHAKEDOWN,
         "the last strike still makes the dent or the dissipation in the fibres grow, or its sphere "
         "does not leave: `shakedown_strike` is missing",
     ),
     "not_steady": (
-        _NOT_STEADY,
+        outputs.NOT_STEADY,
         "the last strike still makes the dent or the residual deflection grow, or its sphere "
         "does not leave: `steady_strike` is missing",
     ),
@@ -244,13 +244,6 @@ BY_SPHERE = _table(
     Variable("status_of_spheres", ("sphere",), "1", "why responses are missing, by sphere"),
 )
 """Answers of every sphere, of runs with several, by name."""
-NO_GROWTH = 1e-3
-"""Largest growth in a strike, over what strikes have left so far, that counts as none."""
-GROWING = {
-    "steady_strike": (("permanent_indentation", "residual_deflection"), "not_steady"),
-    "shakedown_strike": (("permanent_indentation", "plastic_dissipation"), "no_shakedown"),
-}
-"""Strikes from which on something does not grow: what, and the flag of `remarks` without one."""
 _WITHOUT_GROWTH = _table(
     *(
         Variable(

@@ -16,9 +16,10 @@ from impactlab.figures.labels import display
 from impactlab.types import Floats
 
 DENT = "permanent_indentation_over_strikes"
+_DEFLECTION = "residual_deflection_over_strikes"
 _PANELS = {
     DENT: "accumulated dent",
-    "residual_deflection_over_strikes": "residual deflection",
+    _DEFLECTION: "residual deflection",
     "restitution_over_strikes": "restitution",
     "rebound_velocity_over_strikes": "separation velocity",
 }
@@ -39,7 +40,8 @@ def _plan(runs: xr.Dataset) -> Plan:
 def _meaning(runs: xr.Dataset) -> str:
     moving = "strike_interval" in runs.coords
     return (
-        "The deflection is that at the next touch of the beam, which goes on moving."
+        "The deflection is that at the next touch of the beam, which goes on moving; after the "
+        "last strike there is none."
         if moving
         else "The beam is at rest before each strike."
     )
@@ -84,6 +86,8 @@ def _draw(runs: xr.Dataset, names: Sequence[str]) -> Figure:
     figure, axes = style.panels(len(names), columns=min(len(names), 2), height=56, sharex=True)
     for ax, name in zip(axes, names, strict=True):
         valid = usable(shown, name)
+        if name == _DEFLECTION and "strike_interval" in shown.coords:
+            valid = valid.where(shown["strike"] < shown["strikes"])  # the last one is at rest
         unit = display(valid)
         for curve in selected.curves:
             _add(ax, shown, unit(valid.isel(curve.where)), curve)

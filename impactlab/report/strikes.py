@@ -13,8 +13,8 @@ from impactlab.figures.access import design_dims, usable
 from impactlab.figures.labels import display
 from impactlab.figures.strikes import DENT, longest, strike_series
 from impactlab.report.page import Cell, Entry, Row, Section, Table
+from impactlab.solver.growth import NO_GROWTH
 from impactlab.types import Floats
-from impactlab.variables import NO_GROWTH
 
 _DEFLECTION, _RESTITUTION = "residual_deflection_over_strikes", "restitution_over_strikes"
 _MOST_RUNS = 20  # in the table
@@ -35,13 +35,11 @@ def entries(runs: xr.Dataset) -> list[Entry]:
         (
             "Strikes",
             f"Over {count} strikes the dent {growth} ({_amounts(dent, last)}), and "
-            f"{_end_of_growth(shown, 'steady_strike', 'dent and deflection no longer grow')}",
+            f"{_end_of_growth(shown, 'steady_strike', 'dent and deflection')}",
         ),
         (
             "Shakedown",
-            _end_of_growth(
-                shown, "shakedown_strike", "dent and dissipation in the fibres no longer grow"
-            ),
+            _end_of_growth(shown, "shakedown_strike", "dent and dissipation in the fibres"),
         ),
         (
             "Restitution",
@@ -68,13 +66,17 @@ def _amounts(series: xr.DataArray, values: Floats) -> str:
 
 
 def _end_of_growth(runs: xr.Dataset, name: str, what: str) -> str:
-    """Return from which strike on what is so, in how many runs, and that it is not in others."""
-    strikes = usable(runs, name).values.ravel()
+    """Return from which strike on something does not grow, or that the last still makes it grow.
+
+    Of the runs that have a last strike; what: the subject, in the plural.
+    """
+    complete = np.isfinite(usable(runs, DENT).isel(strike=-1).values.ravel())
+    strikes = usable(runs, name).values.ravel()[complete]
     reached, count = strikes[np.isfinite(strikes)], strikes.size
     if not reached.size:
-        return f"in no run {what} by the last strike"
+        return f"{what} still grow at the last{' in every run' if count > 1 else ''}"
     where = f"in {reached.size} of {count} runs " if reached.size < count else ""
-    return f"{where}{what} from strike {labels.span(reached, 3)} on"
+    return f"{where}{what} no longer grow from strike {labels.span(reached, 3)} on"
 
 
 def sections(runs: xr.Dataset, place: Callable[[xr.Dataset, dict[str, int]], str]) -> list[Section]:

@@ -19,8 +19,9 @@ from impactlab.figures import access, labels, measures
 from impactlab.files import replaced
 from impactlab.methods import FAMILIES, INDICES
 from impactlab.report.answer import answers
+from impactlab.solver.growth import GROWING
 from impactlab.validation.errors import unknown
-from impactlab.variables import FLAGS, GROWING, MARKED, status_bits
+from impactlab.variables import FLAGS, MARKED, status_bits
 
 if TYPE_CHECKING:
     from pandas import DataFrame

@@ -41,6 +41,9 @@ ROUND_TOP = 1024
 SKIN_MAY_GIVE = 4096
 # The axial force of ends that hold the axis, in other models than von_karman.
 STRETCHING_LEFT_OUT = 2048
+# Runs with several strikes of which the last one still leaves more.
+NO_SHAKEDOWN = 8192
+NOT_STEADY = 16384
 
 
 SHORT_PAUSE = 0.05

@@ -10,7 +10,7 @@ import impactlab as il
 from impactlab.figures import access
 from impactlab.figures.catalogue import applicable
 from impactlab.report.comparison import on_common_dimensions
-from impactlab.solve import _first_without_growth
+from impactlab.solver.growth import first_without_growth
 from impactlab.study.design import design
 from impactlab.study.estimate import estimate
 from impactlab.variables import BY_SPHERE, BY_STRIKE, OF_STRIKES
@@ -173,14 +173,14 @@ def test_growth_ends_where_a_geometric_series_says():
     first = [
         next(n for n in numbers if q ** (n - 1) * (1 - q) <= 1e-3 * (1 - q**n)) for q in (0.5, 0.8)
     ]
-    ends = _first_without_growth(strikes, [level, values])
+    ends = first_without_growth(strikes, [level, values])
     assert ends.tolist()[:2] == first
     assert np.isnan(ends[2:]).all()
     late = level.copy()
     late[0, 40:] = -1.0  # grows at strike 41, downwards
-    assert _first_without_growth(strikes, [late, values])[0] == 42
+    assert first_without_growth(strikes, [late, values])[0] == 42
     late[1, 59] = np.nan  # unknown in the last strike
-    assert np.isnan(_first_without_growth(strikes, [late, values])[1])
+    assert np.isnan(first_without_growth(strikes, [late, values])[1])
 
 
 @pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
