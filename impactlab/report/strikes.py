@@ -76,7 +76,8 @@ def _end_of_growth(runs: xr.Dataset, name: str, what: str) -> str:
     if not reached.size:
         return f"{what} still grow at the last{' in every run' if count > 1 else ''}"
     where = f"in {reached.size} of {count} runs " if reached.size < count else ""
-    return f"{where}{what} no longer grow from strike {labels.span(reached, 3)} on"
+    ends = labels.span(reached, 3).replace(" to ", "–")
+    return f"{where}{what} no longer grow from strike {ends} on"
 
 
 def sections(runs: xr.Dataset, place: Callable[[xr.Dataset, dict[str, int]], str]) -> list[Section]:

@@ -10,10 +10,12 @@ import impactlab as il
 from impactlab.figures import access
 from impactlab.figures.catalogue import applicable
 from impactlab.report.comparison import on_common_dimensions
-from impactlab.solver.growth import first_without_growth
+from impactlab.solver.growth import by_strike, first_without_growth
+from impactlab.solver.outputs import SERIES
+from impactlab.solver.types import CASE
 from impactlab.study.design import design
 from impactlab.study.estimate import estimate
-from impactlab.variables import BY_SPHERE, BY_STRIKE, OF_STRIKES
+from impactlab.variables import BY_SPHERE, BY_STRIKE, OF_STRIKES, WARNINGS
 
 GRID = il.Discretisation(nodes=33, points=5, scheme="modal")
 IMPACT = il.paper_impact(1.0, "finite_element")
@@ -181,6 +183,19 @@ def test_growth_ends_where_a_geometric_series_says():
     assert first_without_growth(strikes, [late, values])[0] == 42
     late[1, 59] = np.nan  # unknown in the last strike
     assert np.isnan(first_without_growth(strikes, [late, values])[1])
+
+
+def test_the_last_rest_is_no_growth_of_a_beam_that_moves_on():
+    cases = np.zeros(2, CASE)
+    cases["strikes"], cases["strike_interval"] = 4, [0.0, 0.1]
+    series = np.ones((2, 4, len(SERIES)))
+    series[:, -1, SERIES.index("residual_deflection")] = 0.5
+    columns = {"status": np.zeros(2, int), "remarks": np.ones(2, int)}
+    answers = by_strike(cases, columns, series)
+    assert np.isnan(answers["steady_strike"][0])
+    assert answers["steady_strike"][1] == 2
+    assert answers["shakedown_strike"].tolist() == [2, 2]
+    assert answers["remarks"].tolist() == [1 | WARNINGS["not_steady"][0], 1]
 
 
 @pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
