@@ -54,7 +54,7 @@ def _sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, ...]:
 
 
 def _applies(runs: xr.Dataset, analysis: xr.Dataset) -> bool:
-    return DENT in runs and bool(np.isfinite(runs[DENT]).any())
+    return DENT in runs
 
 
 @record.figure(

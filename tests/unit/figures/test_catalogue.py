@@ -9,7 +9,7 @@ import samples
 import witnesses
 import xarray as xr
 from drawings import assert_texts_are_fit_for_print
-from made_runs import made_once
+from made_runs import design_of, made_once, with_answers
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from impactlab.analysis import distribution
@@ -18,8 +18,10 @@ from impactlab.figures import data, style
 from impactlab.figures.catalogue import CATALOGUE, LEAD, applicable
 from impactlab.figures.distributions import exceedance
 from impactlab.figures.samples import scatter
-from impactlab.variables import RESPONSES
+from impactlab.solver.outputs import SERIES
+from impactlab.variables import RESPONSES, described
 
+FOLLOWED = {"residual_deflection": "maximum_deflection"}
 EXPECTED = {
     "velocity_study": {
         "first_contact",
@@ -41,6 +43,7 @@ EXPECTED = {
         "contact_duration",
         "parameter_effects",
     },
+    "strikes_study": {"strike_series", "contact_duration", "parameter_effects"},
     "material_study": {"parameter_effects"},
     "shear_study": {"shear", "parameter_effects"},
     "discretisation_study": {"nodes_convergence", "points_convergence", "convergence_cost"},
@@ -111,6 +114,18 @@ def sample_study():
     runs.attrs |= {"limited": "peak_force", "limits": 35e3}
     latin = runs.assign_attrs(method="delta")
     return runs, samples.indices(runs).merge(distribution.analysis(latin))
+
+
+@made_once
+def strikes_study():
+    """Twelve strikes at three velocities, steady from the ninth on but for the fastest."""
+    design = design_of({"velocity": [0.5, 1.0, 5.0]}, study="strikes", method="grid")
+    runs, number = with_answers(design), np.arange(1.0, 13.0)
+    growth = xr.DataArray(np.minimum(number, 8.0) / 8.0, {"strike": number}, "strike")
+    for name in SERIES:
+        runs[f"{name}_over_strikes"] = runs[FOLLOWED.get(name, name)] * growth
+    runs["steady_strike"] = ("velocity", [9.0, 9.0, np.nan])
+    return described(runs), xr.Dataset(attrs=runs.attrs)
 
 
 @made_once
