@@ -1,8 +1,8 @@
 """A checker of Abaqus' syntax, for the keywords that a deck uses.
 
 Only what holds for explicit dynamics; a keyword or parameter that is not listed is a complaint.
-Source: the Keywords Guide, of which *CONTACT PAIR, *SECTION CONTROLS, *PLASTIC and *CYCLIC
-HARDENING were read (2016, 2017); the rest is from memory.
+Source: the Keywords Guide, of which *CONTACT PAIR, *SECTION CONTROLS, *PLASTIC, *CYCLIC HARDENING
+and *SPRING were read (2016, 2017), and the library of springs; the rest is from memory.
 """
 
 import re
@@ -30,13 +30,14 @@ class Rule:
 
 
 MANY = 10**9
+NODES: dict[str | None, int] = {"C3D8": 8, "C3D8R": 8, "SPRINGA": 2}
+"""Elements of Abaqus/Explicit, which has no SPRING1 or SPRING2, and the nodes of each."""
 FLAG: set[str | None] = {None}
 RULES = {
     "HEADING": Rule(MODEL, lines=(1, MANY), entries=(1, 80)),
     "NODE": Rule(MODEL, optional={"NSET": None}, lines=(1, MANY), entries=(4, 4)),
-    "ELEMENT": Rule(
-        MODEL, {"TYPE": {"C3D8", "C3D8R"}}, {"ELSET": None}, lines=(1, MANY), entries=(9, 9)
-    ),
+    "ELEMENT": Rule(MODEL, {"TYPE": {*NODES}}, {"ELSET": None}, lines=(1, MANY), entries=(2, MANY)),
+    "SPRING": Rule(MODEL, {"ELSET": None}, lines=(2, 2), entries=(1, 1)),
     "ELSET": Rule(MODEL, {"ELSET": None}, lines=(1, MANY), entries=(1, 16)),
     "NSET": Rule(MODEL, {"NSET": None}, lines=(1, MANY), entries=(1, 16)),
     "SURFACE": Rule(MODEL, {"NAME": None}, {"TYPE": {"ELEMENT"}}, lines=(1, MANY), entries=(2, 2)),
@@ -113,6 +114,7 @@ USES = [  # keyword, the parameter or the entries of a data line that use a name
     ("ELSET", slice(1), "element set"),
     ("DLOAD", slice(1), "element set"),
     ("SOLID SECTION", "ELSET", "element set"),
+    ("SPRING", "ELSET", "element set"),
     ("CONTACT PAIR", slice(2), "surface"),
     ("CONTACT OUTPUT", "CPSET", "contact pair set"),
     ("SOLID SECTION", "MATERIAL", "material"),
@@ -157,6 +159,10 @@ def _of_card(card: Card, rule: Rule) -> list[str]:
     counts = {len(line) for line in card.data}
     least, most = rule.entries
     found += [f"{n} entries per line" for n in counts if not least <= n <= most]
+    if card.keyword == "ELEMENT" and (nodes := NODES.get(card.parameters.get("TYPE"))):
+        found += [f"{n} entries per line" for n in counts if n != nodes + 1]
+    if card.keyword == "SPRING" and card.data and card.data[0] != [""]:
+        found.append("the first line of SPRINGA is not blank")
     return found
 
 

@@ -49,6 +49,13 @@ def numbers(card: Card) -> NDArray[np.float64]:
 
 def members(deck: list[Card], name: str) -> NDArray[np.int64]:
     """Return the node numbers, from 1, of a set."""
+    if lines := [
+        line[:1]
+        for c in deck
+        if c.keyword == "NODE" and c.parameters.get("NSET") == name
+        for line in c.data
+    ]:
+        return np.array(lines, dtype=np.int64).ravel()
     lines = named(deck, "NSET", NSET=name).data
     return np.array([int(entry) for line in lines for entry in line])
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid, simpson
+from scipy.linalg import expm
 from scipy.optimize import brentq
 
 import impactlab as il
@@ -41,6 +42,31 @@ def roots(left, right, number):
     return np.array(
         [brentq(function, near(n) - 0.4, near(n) + 0.4, xtol=1e-13) for n in range(1, number + 1)]
     )
+
+
+def determinant(springs, b):
+    """Zero at a mode: phi and its derivatives, each over b^order, across the span.
+
+    springs: k_t and k_r of the left end and of the right one, over EI and span.
+    """
+    matrix = b * np.eye(4, k=1)
+    matrix[3, 0] = b
+    across = expm(matrix)
+    rows = []
+    for (k_t, k_r), inwards, end in zip(springs, (1.0, -1.0), (np.eye(4), across), strict=True):
+        t, r = (1.0 if np.isinf(k) else k / (k + b**n) for k, n in ((k_t, 3), (k_r, 1)))
+        rows.append((1.0 - t) * inwards * end[3] + t * end[0])
+        rows.append((1.0 - r) * end[2] - r * inwards * end[1])
+    return np.linalg.det(np.array(rows))
+
+
+def sprung_roots(springs, number):
+    """The first roots of the characteristic equation."""
+    grid = np.linspace(0.3, 3.5 * (number + 2), 4000)
+    values = np.array([determinant(springs, b) * np.exp(-b) for b in grid])
+    signs = np.flatnonzero(values[1:] * values[:-1] < 0.0)
+    found = [brentq(lambda b: determinant(springs, b), *grid[k : k + 2], xtol=1e-13) for k in signs]
+    return np.array(found[:number])
 
 
 def basis(b, x, derivative):

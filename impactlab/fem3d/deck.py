@@ -23,6 +23,7 @@ from impactlab.fem3d.solver.mesh import (
     check_mesh,
     sphere_density,
 )
+from impactlab.fem3d.solver.springs import Springs, springs_of
 from impactlab.fem3d.solver.system import refuse_rate
 from impactlab.model.checks import instance, one_of, positive
 from impactlab.model.discretisation import Discretisation
@@ -36,12 +37,13 @@ _BODIES = {BEAM: "BEAM", SPHERE: "SPHERE"}
 
 _PER_LINE = 16  # entries that a data line may hold in both programs
 _OVERCLOSURE = 0.002  # at the centre, over the indentation, in Hertz's contact, in CalculiX
+_FAR = 10.0  # length of springs that turn, over that of the mesh
 _LONGEST = 10.0  # plastic strain at which the tables end; the stress remains from there on
 
 
 @dataclass(frozen=True, kw_only=True)
 class Flavour:
-    """One program. elements: its types, fully integrated (True) and not.
+    """One program. elements: its types, fully integrated (True) and not. spring: its type.
 
     kinematic: whether its kinematic hardening is right. limits: what a user has to know, a sentence
     each.
@@ -49,6 +51,7 @@ class Flavour:
 
     program: str
     elements: Mapping[bool, str]
+    spring: str
     kinematic: bool
     limits: tuple[str, ...]
 
@@ -57,6 +60,7 @@ FLAVOURS = {
     "abaqus": Flavour(
         program="Abaqus/Explicit",
         elements={True: "C3D8", False: "C3D8R"},
+        spring="SPRINGA",  # SPRING1 is of Abaqus/Standard alone
         kinematic=True,
         limits=(
             "Never run: no Abaqus was at hand. Keywords are checked against its documented syntax "
@@ -67,6 +71,7 @@ FLAVOURS = {
     "calculix": Flavour(
         program="CalculiX 2.20",
         elements={True: "C3D8I", False: "C3D8I"},
+        spring="SPRING1",
         kinematic=False,
         limits=(
             "Small displacements, implicit dynamics with equal steps, contact by a linear penalty: "
@@ -125,6 +130,7 @@ def write_deck(
     # Hertz's largest pressure is 2 E* a/(pi R), his indentation a^2/R.
     modulus, radius = hertz.effective_modulus(impact), contact_radius(impact)
     values = flatten(impact, Discretisation())
+    springs = springs_of(mesh, impact)
     groups = {
         f"{_BODIES[body]}_{'FINE' if full else 'COARSE'}": (full, numbers)
         for body, full, numbers in mesh.groups()
@@ -137,9 +143,14 @@ def write_deck(
         duration=duration,
         interval=interval,
         plastic=plastic,
-        given=[(PARAMETERS[name], values[name]) for name in IMPACT_PARAMETERS if name in values],
+        given=[
+            (PARAMETERS[name], values[name])
+            for name in IMPACT_PARAMETERS
+            if name in values and (values[name] != 0.0 or "stiffness" not in name)
+        ],
         geometry="\n".join(_geometry(mesh, groups, impact.sphere.radius, chosen)),
-        held=_held(mesh),
+        springs="".join(f"{line}\n" for line in _springs(mesh, springs, chosen)),
+        held=_held(mesh, grounded=chosen.spring == "SPRINGA" and springs.nodes.size > 0),
         groups=groups,
         materials={"BEAM": (beam, beam.density), "SPHERE": (ball, sphere_density(mesh, impact))},
         stiffness=2.0 * modulus / (math.pi * radius * _OVERCLOSURE),  # in Pa/m
@@ -217,7 +228,38 @@ def _geometry(
         yield from (f"{element + 1}, S{face}" for element, face in faces.tolist())
 
 
-def _held(mesh: Mesh) -> str:
+def _springs(mesh: Mesh, springs: Springs, flavour: Flavour) -> Iterator[str]:
+    """Yield the lines of springs, numbered on from the mesh, in sets of one axis and stiffness.
+
+    SPRINGA turns with the line between its nodes: the other one is so far away, outwards from the
+    beam along the axis, that it does not.
+    """
+    places = LENGTH * mesh.nodes[springs.nodes]
+    far = _FAR * np.ptp(LENGTH * mesh.nodes[:, 0])
+    outwards = np.where(springs.axes == 0, np.sign(places[:, 0]), -1.0)
+    places[np.arange(len(places)), springs.axes] += far * outwards
+    alone = flavour.spring == "SPRING1"
+    if len(places) and not alone:
+        yield "*NODE, NSET=GROUND"
+        for number, (x, y, z) in enumerate(places.tolist(), len(mesh.nodes) + 1):
+            yield f"{number}, {x:.12e}, {y:.12e}, {z:.12e}"
+    sets: dict[tuple[int, str], list[int]] = {}
+    # A point in the number tells CalculiX that it is no axis.
+    stiffness = [f"{value:.9e}" for value in (springs.stiffness / LENGTH).tolist()]
+    for row, key in enumerate(zip(springs.axes.tolist(), stiffness, strict=True)):
+        sets.setdefault(key, []).append(row)
+    for count, ((axis, value), rows) in enumerate(sets.items(), start=1):
+        yield f"*ELEMENT, TYPE={flavour.spring}, ELSET=SPRINGS_{count}"
+        for row in rows:
+            ground = [] if alone else [len(mesh.nodes) + 1 + row]
+            numbers = [len(mesh.elements) + 1 + row, *ground, int(springs.nodes[row]) + 1]
+            yield ", ".join(map(str, numbers))
+        yield f"*SPRING, ELSET=SPRINGS_{count}"
+        yield str(axis + 1) if alone else ""
+        yield value
+
+
+def _held(mesh: Mesh, *, grounded: bool) -> str:
     """Return the sets of nodes that are held, in their directions, one data line each."""
     sets = {
         "SYMMETRY_X, 1, 1": mesh.symmetry_x,
@@ -225,7 +267,8 @@ def _held(mesh: Mesh) -> str:
         "SUPPORT, 3, 3": mesh.support,
         "CLAMPED, 1, 3": mesh.clamped,
     }
-    return "\n".join(line for line, nodes in sets.items() if nodes.size)
+    lines = [line for line, nodes in sets.items() if nodes.size]
+    return "\n".join(lines + ["GROUND, 1, 3"] * grounded)
 
 
 def _values(*entries: float) -> str:
@@ -267,6 +310,7 @@ _TEMPLATES.globals |= {
         "pinned": "held at mid-depth",
         "clamped": "held all over its face",
         "free": "free",
+        "elastic": "on springs",
     },
     "ACCELERATION": 1e3,  # mm/s2 per m/s2
     "DENSITY": 1e-12,  # t/mm3 per kg/m3

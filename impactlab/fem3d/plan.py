@@ -45,8 +45,9 @@ class Case:
 
 
 def beam_models(impact: Impact) -> tuple[str, ...]:
-    """Return the models of the beam that have such ends and such a place of the strike."""
-    return tuple(name for name in _MODELS if is_plain(impact) or name not in LUMPED_MODELS)
+    """Return the models of the beam that have such ends, foundation and place of the strike."""
+    lumped = is_plain(impact) and impact.beam.foundation_stiffness == 0.0
+    return tuple(name for name in _MODELS if lumped or name not in LUMPED_MODELS)
 
 
 def case_of(

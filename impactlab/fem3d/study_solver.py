@@ -32,10 +32,10 @@ from impactlab.model.case_table import case_table
 from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import OTHER_SECTION, SPRUNG_BEAM, Impact, paper_impact
+from impactlab.model.impact import DAMPED_BEAM, OTHER_SECTION, Impact, paper_impact
 from impactlab.model.parameters import with_values
 from impactlab.solve import solve as solve_cases
-from impactlab.solver import BEAM_MODELS, SUPPORTS
+from impactlab.solver import BEAM_MODELS, DAMPINGS, SUPPORTS
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.solver.types import CASE
 from impactlab.study.shard import Array, Columns
@@ -99,9 +99,10 @@ def _refuse_beams(records: Array) -> None:
     """Raise ValueError where a beam is none of the 3-D FE model's."""
     if records["beam_shape"].any():
         raise ValueError(f"beam_model = {SOLID!r}: must be another one {OTHER_SECTION}")
-    for side in ("left", "right"):
-        if np.any(records[f"support_{side}"] == SUPPORTS.index("elastic")):
-            raise ValueError(f"beam_model = {SOLID!r}: must be {SPRUNG_BEAM}")
+    if any(records[name].any() for name in DAMPINGS):
+        raise ValueError(f"beam_model = {SOLID!r}: must be {DAMPED_BEAM}")
+    if np.any(records["strikes"] > 1) or records["further"].any():
+        raise ValueError(f"beam_model = {SOLID!r}: has one strike by one sphere: change it")
 
 
 def is_solid(cases: Array) -> Array:

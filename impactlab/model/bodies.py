@@ -13,8 +13,8 @@ from impactlab.model.cross_section import Section
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI
 from impactlab.model.section import SHAPES, check_section, section_fields
-from impactlab.solver import RESISTANCES as RESISTANCES
-from impactlab.solver import SUPPORTS
+from impactlab.solver import DAMPINGS as DAMPINGS
+from impactlab.solver import RESISTANCES, SUPPORTS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,8 +118,9 @@ class Beam:
         Damping of each mode over its critical one, of 1; with the scheme "modal" alone.
     foundation_stiffness : Quantity, default 0
         Force per length over the deflection of a bed of springs beneath the beam (Winkler), in
-        N/m2; they pull as they push. Damping and foundation need the beam models
-        "euler_bernoulli", "elastic", "timoshenko" or "von_karman" (solver/resistance.py).
+        N/m2; they pull as they push. Damping needs the beam models "euler_bernoulli",
+        "elastic", "timoshenko" or "von_karman" (solver/resistance.py), a foundation one of these
+        or "solid".
 
     Raises
     ------

@@ -20,9 +20,9 @@ from impactlab.model.quantities import SI, Quantity, engineering
 from impactlab.solver import (
     BEAM_MODELS,
     COMPLIANCES,
+    DAMPINGS,
     LOADS,
     PRESTRESSES,
-    RESISTANCES,
     WAVE_MODELS,
 )
 from impactlab.solver.contact import LAWS
@@ -31,19 +31,27 @@ MODELS = (*BEAM_MODELS, *wings.models())
 """Names of all models of the beam."""
 MOVING_MODELS = (*WAVE_MODELS, *wings.models())
 """Those of which every place moves, with any ends, struck anywhere."""
+MODELS_ON_SPRINGS = (*WAVE_MODELS, *wings.models())
+"""Those with elastic ends and a foundation."""
 MID_SPAN = 0.5
 """Usual place of the strike over the span."""
 HINGES = ("pinned", "roller")
 """Supports against deflection alone; a roller does not hold the axis (solver/von_karman.py)."""
 MOVING_SUPPORTS = ("free", "elastic")
 """Supports whose end can be struck."""
-SPRUNG_BEAM = f"{' or '.join(WAVE_MODELS)} with elastic ends: change it, or set other supports"
-"""End of messages on what elastic ends cannot have."""
-RESISTED_BEAM = (
-    f"{' or '.join(WAVE_MODELS)} with {', '.join(RESISTANCES[:-1])} or {RESISTANCES[-1]}: "
-    "change it, or set these to 0"
+SPRUNG_BEAM = (
+    f"{' or '.join(MODELS_ON_SPRINGS)} with elastic ends: change it, or set other supports"
 )
-"""The same, of what resists the motion."""
+"""End of messages on what elastic ends cannot have."""
+DAMPED_BEAM = (
+    f"{' or '.join(WAVE_MODELS)} with {', '.join(DAMPINGS[:-1])} or {DAMPINGS[-1]}: change it, "
+    "or set these to 0"
+)
+"""The same, of what damps the beam."""
+FOUNDED_BEAM = (
+    f"{' or '.join(MODELS_ON_SPRINGS)} with foundation_stiffness: change it, or set that to 0"
+)
+"""The same, of a foundation."""
 STRETCHED_LAYERS = (
     "must not be von_karman with shape: laminate, for it stretches one metal alone: change it, or "
     "set another shape"
@@ -99,7 +107,7 @@ class Impact:
         what other ends need.
     strikes : int, default 1
         Number of times that a sphere with this velocity strikes this place, the beam at rest again
-        before each (solver/settle.py, settle_stretch.py) unless `strike_interval` is stated: plastic strains and dent
+        before each (solver/settle.py) unless `strike_interval` is stated: plastic strains and dent
         are carried over. Responses are those of the last strike, but that dents, plastic strains
         and dissipated energies are what all of them have left, and deflections count from the axis
         before the first. More than one need ends or a foundation that hold the beam, and another
@@ -178,11 +186,14 @@ class Impact:
         sound = among(self.beam_model, BEAM_MODELS) | np.equal(beam.shape, "rectangle")
         require(sound, "Impact", "beam_model", self.beam_model, message)
         sprung = np.equal(beam.support_left, "elastic") | np.equal(beam.support_right, "elastic")
-        sound = among(self.beam_model, WAVE_MODELS) | ~sprung
+        on_springs = among(self.beam_model, MODELS_ON_SPRINGS)
+        sound = on_springs | ~sprung
         require(sound, "Impact", "beam_model", self.beam_model, f"must be {SPRUNG_BEAM}")
-        resisted = sum(np.greater(getattr(beam, field), 0.0) for field in RESISTANCES)
-        sound = among(self.beam_model, WAVE_MODELS) | np.equal(resisted, 0)
-        require(sound, "Impact", "beam_model", self.beam_model, f"must be {RESISTED_BEAM}")
+        sound = on_springs | np.equal(beam.foundation_stiffness, 0.0)
+        require(sound, "Impact", "beam_model", self.beam_model, f"must be {FOUNDED_BEAM}")
+        damped = sum(np.greater(getattr(beam, field), 0.0) for field in DAMPINGS)
+        sound = among(self.beam_model, WAVE_MODELS) | np.equal(damped, 0)
+        require(sound, "Impact", "beam_model", self.beam_model, f"must be {DAMPED_BEAM}")
         sound = np.not_equal(beam.shape, "laminate") | np.not_equal(self.beam_model, "von_karman")
         require(sound, "Impact", "beam_model", self.beam_model, STRETCHED_LAYERS)
         object.__setattr__(self, "further_spheres", spheres_text(self))

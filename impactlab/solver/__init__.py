@@ -24,7 +24,9 @@ SUPPORTS = ("pinned", "clamped", "free", "elastic", "roller")
 """What holds an end of the beam; the index is the kernels' switch, in which a roller is pinned."""
 AXIAL_SUPPORTS = ("pinned", "clamped")
 """Supports that hold the axis."""
-RESISTANCES = ("mass_damping", "stiffness_damping", "damping_ratio", "foundation_stiffness")
+DAMPINGS = ("mass_damping", "stiffness_damping", "damping_ratio")
+"""What damps the beam: fields of beams and of the case table."""
+RESISTANCES = (*DAMPINGS, "foundation_stiffness")
 """What resists the beam's motion beside bending: fields of beams and of the case table."""
 LOADS = ("point", "contact_patch")
 """Where the contact force acts on the beam; the index is the kernels' switch."""

@@ -10,8 +10,8 @@ of the grid, springs of ends included. The sections are together as long as the 
     g(N) = integral of (N - N_0)/EA - w_x^2/2 over the span = 0.
 
 Above the buckling load, where the equations' matrix is positive definite, g grows with N: there is
-one root, and it has the least energy of all equilibria. (With W = max over N of f(w, N), f convex in
-w there, W(any w) >= f(any w, N) >= f(w(N), N) = W(w(N)).) Bisection finds it; the pivots of the
+one root, and it has the least energy of all equilibria. (With W = max over N of f(w, N), f convex
+in w there, W(any w) >= f(any w, N) >= f(w(N), N) = W(w(N)).) Bisection finds it; the pivots of the
 matrix, all positive or not, show on which side of the buckling load N lies.
 
 A beam that is bowed by more than about its depth has a second equilibrium, bowed the other way. A

@@ -84,8 +84,8 @@ class Stretch(NamedTuple):
     dt u_t its increment, dv the last change of that (m), P = N w_x (N): half-way from node i to
     i + 1 at index i. e, kappa (1/m), N (N), M (N m): at nodes, where the step began; N_0 (N).
     memory: e and kappa (1/m) when the fibres of a node were looked at last, and the strain that no
-    fibre yields by from there, (last + 3, 3). resistance: damping and foundation. bands: room for the
-    beam at rest, (5, last + 3).
+    fibre yields by from there, (last + 3, 3). resistance: damping and foundation. bands: room for
+    the beam at rest, (5, last + 3).
     """
 
     stiffness: float

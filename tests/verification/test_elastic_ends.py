@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
-from scipy.optimize import brentq
+from end_modes import sprung_roots
 
 import impactlab as il
 from impactlab.model.beam_modes import mode_table, wave_numbers
@@ -25,28 +24,6 @@ SPRINGS = [  # k_t and k_r of the left end and of the right one, over EI and spa
 ]
 
 
-def determinant(springs, b):
-    """Zero at a mode: phi and its derivatives, each over b^order, across the span."""
-    matrix = b * np.eye(4, k=1)
-    matrix[3, 0] = b
-    across = expm(matrix)
-    rows = []
-    for (k_t, k_r), inwards, end in zip(springs, (1.0, -1.0), (np.eye(4), across), strict=True):
-        t, r = (1.0 if np.isinf(k) else k / (k + b**n) for k, n in ((k_t, 3), (k_r, 1)))
-        rows.append((1.0 - t) * inwards * end[3] + t * end[0])
-        rows.append((1.0 - r) * end[2] - r * inwards * end[1])
-    return np.linalg.det(np.array(rows))
-
-
-def closed_form(springs, number):
-    """The first roots of the characteristic equation."""
-    grid = np.linspace(0.3, 3.5 * (number + 2), 4000)
-    values = np.array([determinant(springs, b) * np.exp(-b) for b in grid])
-    signs = np.flatnonzero(values[1:] * values[:-1] < 0.0)
-    found = [brentq(lambda b: determinant(springs, b), *grid[k : k + 2], xtol=1e-13) for k in signs]
-    return np.array(found[:number])
-
-
 def kinds(springs):
     """Supports, as numbers, and what make_grid takes of springs; EI and span are 1."""
     names = {(np.inf, 0.0): "pinned", (np.inf, np.inf): "clamped", (0.0, 0.0): "free"}
@@ -57,14 +34,14 @@ def kinds(springs):
 
 @pytest.mark.parametrize("springs", SPRINGS)
 def test_modes_have_the_frequencies_of_the_characteristic_equation(springs):
-    exact = closed_form(springs, 5)  # beyond, the exponentials take the digits of this determinant
+    exact = sprung_roots(springs, 5)  # beyond, the exponentials take the digits of this determinant
     b = wave_numbers(np.array(springs), 12)
     assert b[b > 0.0][:5] == pytest.approx(exact, rel=1e-9)
 
 
 @pytest.mark.parametrize("springs", SPRINGS)
 def test_the_grids_frequencies_converge_to_it_at_second_order(springs):
-    exact, errors = closed_form(springs, 4) ** 2, []
+    exact, errors = sprung_roots(springs, 4) ** 2, []
     ends, stiffnesses = kinds(springs)
     for nodes in (41, 81):
         grid = make_grid(nodes, 1 / (nodes - 1), 1e-6, 1.0, 1.0, *ends, 4, *stiffnesses)

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from end_modes import roots
-from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import eigsh
+from solid_matrices import matrices
 
 import impactlab as il
 from impactlab.fem3d.solver import impact_mesh, march, solve_on
@@ -19,9 +19,16 @@ STEP = 3e-7
 COMPARED = ("contact_force", "midspan_deflection", "strain_work", "plastic_work", "kinetic_energy")
 
 
-def held(left, right, place, velocity=5.0):
+SPRINGS = {
+    f"{kind}stiffness_{side}": value
+    for side in ("left", "right")
+    for kind, value in (("", 3e7), ("rotational_", 4e4))
+}
+
+
+def held(left, right, place, velocity=5.0, **values):
     paper = il.paper_impact(velocity)
-    beam = replace(paper.beam, support_left=left, support_right=right)
+    beam = replace(paper.beam, support_left=left, support_right=right, **values)
     return replace(paper, beam=beam, strike_position=place, beam_model="solid", gravity=0.0)
 
 
@@ -38,14 +45,23 @@ def assert_same(run, expected):
         assert float(run[name]) == pytest.approx(float(expected[name]), rel=1e-9, nan_ok=True)
 
 
-@pytest.mark.parametrize("ends", ["pinned", "clamped", "free"])
+@pytest.mark.parametrize("ends", ["pinned", "clamped", "free", "elastic"])
 def test_a_half_answers_as_the_quarter_of_a_symmetric_impact(monkeypatch, ends):
-    impact = held(ends, ends, 0.5)
+    impact = held(ends, ends, 0.5, **(SPRINGS if ends == "elastic" else {}))
     quarter = solved(monkeypatch, impact)
     half = solved(monkeypatch, impact, quarters=False)
     assert half.sizes["element"] == 2 * quarter.sizes["element"]
     assert float(quarter["plastic_work"].max()) > 0.1
     assert_same(half, quarter)
+
+
+def test_a_mirrored_strike_on_springs_has_the_mirrored_answer(monkeypatch):
+    springs = {"stiffness_left": 1e8, "rotational_stiffness_left": 5e4}
+    bed = {"foundation_stiffness": 1e9}
+    image = {name.replace("left", "right"): value for name, value in springs.items()}
+    run = solved(monkeypatch, held("elastic", "free", 0.05, **springs, **bed))
+    assert_same(solved(monkeypatch, held("free", "elastic", 0.95, **image, **bed)), run)
+    assert float(run["spring_energy"].max()) > 0.1
 
 
 def test_a_mirrored_strike_has_the_mirrored_answer(monkeypatch):
@@ -89,7 +105,7 @@ def test_the_lowest_frequency_is_that_of_a_beam_with_such_ends(left, right):
     beam = replace(beam, support_left=left, support_right=right)
     impact = replace(paper, beam=beam, strike_position=0.4, beam_model="solid")
     sizes = {"element_size": 5e-3, "patch": 5e-3, "ratio": 3.0, "coarsest": 20e-3}
-    stiffness, mass = matrices(impact, impact_mesh(impact, **sizes))
+    stiffness, mass, _ = matrices(impact, impact_mesh(impact, **sizes))
     # A beam without clamps slides; one without any supports rises and turns, too.
     rigid = ("clamped" not in (left, right)) + 2 * ((left, right) == ("free", "free"))
     near = -((2.0 * np.pi * 10.0) ** 2)  # below all, so that nothing is singular
@@ -98,28 +114,3 @@ def test_the_lowest_frequency_is_that_of_a_beam_with_such_ends(left, right):
     wave = roots(left, right, 1)[0] / beam.span
     per_length = beam.bending_stiffness / beam.mass_per_length
     assert squares[-1] ** 0.5 == pytest.approx(wave**2 * per_length**0.5, rel=0.015)
-
-
-def matrices(impact, mesh):
-    """Stiffness in N/m and lumped mass in kg of what moves of the beam."""
-    beam = np.unique(mesh.elements[mesh.body == BEAM])
-    with ThreadPool(1) as pool:
-        system = System(mesh, impact, pool)
-        rows, tiny = system.assembly, 1e-12
-        system.v[:] = 0.0
-        freedoms = [
-            (node, axis) for node in beam for axis in range(3) if system.inverse_mass[node, axis]
-        ]
-        number = np.array(freedoms).T
-        columns = []
-        for node, axis in freedoms:
-            system.v[node, axis] = 1.0
-            system.strain(tiny)
-            system.v[node, axis] = 0.0
-            forces = np.add.reduceat(system.forces[rows.slots], rows.starts[:-1], axis=0)
-            columns.append(forces[number[0], number[1]] / tiny)
-            system.forces[:] = 0.0
-            for group in system.groups:
-                group.state[:], group.works[:] = 0.0, 0.0
-    stiffness = csc_array(np.array(columns))
-    return 0.5 * (stiffness + stiffness.T), diags_array(system.mass[number[0]])

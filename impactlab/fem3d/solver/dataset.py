@@ -15,7 +15,7 @@ from impactlab.fem3d.solver.frames import FRAMES, Frames
 from impactlab.fem3d.solver.march import Energies, History, March, Progress
 from impactlab.fem3d.solver.mesh import Mesh, check_mesh, impact_mesh
 from impactlab.fem3d.solver.system import System, ThreadPool
-from impactlab.model.bodies import RESISTANCES
+from impactlab.model.bodies import DAMPINGS
 from impactlab.model.checks import integer, positive
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
@@ -102,6 +102,7 @@ OWN = {
     "hourglass_work": ("J", "work against hourglassing"),
     "contact_work": ("J", "work against overlaps in the contact, kept and lost"),
     "gravity_work": ("J", "work of gravity on the sphere"),
+    "spring_energy": ("J", "energy of the springs of elastic ends and foundation"),
     "element_size": ("m", "size of the elements about the contact"),
     "patch": ("m", "half the side of the square in which nodes are matched"),
     "number_of_elements": ("1", "elements of the part that is solved"),
@@ -125,8 +126,7 @@ IMPACT_PARAMETERS = [
     for name, entry in PARAMETERS.items()
     if entry.path[0] == "impact"
     and name not in ("contact", *TIMOSHENKO_OPTIONS, "beam_model", "load", "shear_coefficient")
-    and name not in (*SECTION, *RESISTANCES, "strike_interval", "further_spheres")
-    and "stiffness_" not in name
+    and name not in (*SECTION, *DAMPINGS, "strike_interval", "further_spheres")
 ]
 """Parameters of an impact, without those of the beam models alone."""
 
@@ -143,7 +143,7 @@ def to_dataset(system: System, impact: Impact, history: History, samples: int) -
     answers["plastic_dissipation"] = worked
     last = history.moments[-1].time
     even = np.linspace(0.0, last, samples)
-    energies = np.array(history.energies).reshape(-1, 7).T
+    energies = np.array(history.energies).reshape(-1, len(Energies._fields)).T
     checkpoints = dict(zip(Energies._fields, energies, strict=True))
     times = checkpoints.pop("time")
     parameters = flatten(impact, Discretisation()) | {"sphere_mass": impact.sphere.total_mass}

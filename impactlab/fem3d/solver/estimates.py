@@ -39,9 +39,20 @@ def ends(beam: Beam) -> tuple[str, str]:
     return "pinned" if left in HINGES else left, "pinned" if right in HINGES else right
 
 
+def end_springs(beam: Beam) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the springs of the left and of the right end: N/m, and N m; zeros unless elastic."""
+    left = beam.stiffness_left, beam.rotational_stiffness_left
+    right = beam.stiffness_right, beam.rotational_stiffness_right
+    none = 0.0, 0.0
+    return (
+        left if beam.support_left == "elastic" else none,
+        right if beam.support_right == "elastic" else none,
+    )
+
+
 def copies(impact: Impact) -> int:
     """Return the number of equal parts of beam and sphere: 4 quarters or 2 halves."""
-    left, right = ends(impact.beam)
+    left, right = zip(ends(impact.beam), end_springs(impact.beam), strict=True)
     return 4 if left == right and impact.strike_position == MID_SPAN else 2
 
 
@@ -115,8 +126,13 @@ class Cost:
 def estimate(mesh: Mesh, impact: Impact, *, duration: float) -> Cost:
     """Return the cost of `duration` (s) on `mesh`, from its smallest elements and measurements.
 
-    The largest stable step is about that of a pressure wave over the shortest edge.
+    The largest stable step is about that of a pressure wave over the shortest edge, or shorter
+    where springs are stiff.
     """
+    # which import this module
+    from impactlab.fem3d.solver.mesh import nodal_masses
+    from impactlab.fem3d.solver.springs import springs_of
+
     points = mesh.nodes[mesh.elements]
     ends = ((0, 1), (0, 3), (0, 4), (6, 2), (6, 5), (6, 7))
     edges = [np.linalg.norm(points[:, start] - points[:, end], axis=1) for start, end in ends]
@@ -126,7 +142,10 @@ def estimate(mesh: Mesh, impact: Impact, *, duration: float) -> Cost:
         nu = steel.poissons_ratio
         modulus = steel.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
         stable.append(float(shortest[mesh.body == body].min()) / np.sqrt(modulus / density))
-    steps = int(np.ceil(duration / float(0.9 * min(stable))))
+    springs, mass = springs_of(mesh, impact), nodal_masses(mesh, impact)
+    sprung = np.max(springs.diagonal(len(mass)) / mass[:, np.newaxis])  # 1/s2
+    step = min(stable) / np.sqrt(1.0 + 0.25 * sprung * min(stable) ** 2)
+    steps = int(np.ceil(duration / float(0.9 * step)))
     full = int(mesh.full.sum())
     one_point = len(mesh.elements) - full
     seconds = steps * (one_point * ONE_POINT_SECONDS + full * FULL_SECONDS)

@@ -39,6 +39,7 @@ class Energies(NamedTuple):
 
     strain_work: of the stresses in the elements, kept and dissipated. plastic_work: dissipated of
     it. hourglass_work: against hourglassing. contact_work: on pairs that overlap, kept and lost.
+    spring_energy: kept by elastic ends and foundation.
     """
 
     time: float
@@ -48,12 +49,13 @@ class Energies(NamedTuple):
     hourglass_work: float
     contact_work: float
     gravity_work: float
+    spring_energy: float
 
     @property
     def balance(self) -> float:
         """Return the energy that stays constant."""
         energy = self.kinetic_energy + self.strain_work + self.hourglass_work
-        return energy + self.contact_work - self.gravity_work
+        return energy + self.contact_work + self.spring_energy - self.gravity_work
 
 
 @dataclass
@@ -135,6 +137,7 @@ class March:
         system, mesh, history = self.system, self.system.mesh, self.history
         before = system.v.copy()
         worked = mesh.copies * np.sum([group.energies() for group in system.groups], axis=0)
+        springs = mesh.copies * system.springs.energy(system.x, mesh.nodes)
         self._take()
         # Energies at the start of this step, kinetic by the velocities around it.
         moment = history.moments[-1]
@@ -143,7 +146,7 @@ class March:
         work, plastic, hourglass = worked[[WORK, DISSIPATED, HOURGLASS_WORK]].tolist()
         contact = mesh.copies * self._pushed
         history.energies.append(
-            Energies(moment.time, kinetic, work, plastic, hourglass, contact, gravity)
+            Energies(moment.time, kinetic, work, plastic, hourglass, contact, gravity, springs)
         )
         apart = system.x[mesh.pairs[:, 0]] - system.x[mesh.pairs[:, 1]]
         slid = np.hypot(*apart[system.closing > 0.0, :2].T)

@@ -13,12 +13,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from impactlab.fem3d.solver.estimates import checked_patch, checked_size, copies, ends
+from impactlab.fem3d.solver.estimates import (
+    checked_patch,
+    checked_size,
+    copies,
+    end_springs,
+    ends,
+)
 from impactlab.fem3d.solver.impulses import bulges
 from impactlab.fem3d.solver.lattice import Integers, brick, graded, mirrored, quarter_sphere
-from impactlab.model.bodies import RESISTANCES
+from impactlab.model.bodies import DAMPINGS
 from impactlab.model.checks import positive
-from impactlab.model.impact import HINGES, Impact
+from impactlab.model.impact import Impact
 from impactlab.types import Floats
 
 BEAM, SPHERE = 0, 1  # values of Mesh.body
@@ -130,19 +136,20 @@ def plane_faces(
 
 
 def _refuse_other_beams(impact: Impact) -> None:
-    """Raise ValueError unless the beam is a rectangular one that the mesh knows how to hold."""
+    """Raise ValueError unless the 3-D model has such a beam, struck in such a way."""
     beam = impact.beam
-    plain_values: list[tuple[str, tuple[Any, ...]]] = [
-        ("shape", ("rectangle",)),
-        *((f"support_{side}", (*HINGES, "clamped", "free")) for side in ("left", "right")),
-        *((field, (0.0,)) for field in RESISTANCES),
+    plain_values: list[tuple[Any, str, Any]] = [
+        (beam, "shape", "rectangle"),
+        *((beam, field, 0.0) for field in DAMPINGS),
+        (impact, "strikes", 1),
+        (impact, "further_spheres", None),
     ]
-    for field, plain in plain_values:
-        if (value := getattr(beam, field)) not in plain:
+    for owner, field, plain in plain_values:
+        if (value := getattr(owner, field)) != plain:
+            advice = "leave it out" if plain is None else f"set it to {plain!r}"
             raise ValueError(
-                f"Beam.{field} = {value!r}: the 3-D model is of a rectangular beam without damping "
-                "or foundation, whose ends are pinned, clamped or free: set it to "
-                f"{' or '.join(map(repr, plain))}"
+                f"{type(owner).__name__}.{field} = {value!r}: the 3-D model is of a rectangular "
+                f"beam without damping, struck once by one sphere: {advice}"
             )
     if not 0.0 < impact.strike_position < 1.0:
         raise ValueError(
@@ -174,6 +181,11 @@ def check_mesh(mesh: Mesh, impact: Impact) -> None:
         raise ValueError(
             f"mesh: the beam's ends are {' and '.join(mesh.ends)} in the mesh and "
             f"{' and '.join(supports)} in the impact: make the mesh from this impact (impact_mesh)"
+        )
+    if mesh.copies > copies(impact):
+        raise ValueError(
+            "mesh: the mesh is a quarter, but the springs of the beam's ends differ in the impact: "
+            "make the mesh from this impact (impact_mesh)"
         )
 
 
@@ -341,10 +353,10 @@ def _full(centres: Floats, body: Integers, half: float, impact: Impact) -> NDArr
     if impact.velocity > yields:
         x, near = centres[:, 0], 2.5 * beam.depth
         bent = np.abs(x) < near
-        place, (left, right) = impact.strike_position, ends(beam)
-        if left == "clamped":
-            bent |= x + place * beam.span < near
-        if right == "clamped":
-            bent |= (1.0 - place) * beam.span - x < near
+        place, kinds, springs = impact.strike_position, ends(beam), end_springs(beam)
+        distances = x + place * beam.span, (1.0 - place) * beam.span - x
+        for kind, (_, turn), distance in zip(kinds, springs, distances, strict=True):
+            if kind == "clamped" or turn > 0.0:
+                bent |= distance < near
         full |= (body == BEAM) & bent
     return np.asarray(full)

@@ -21,6 +21,7 @@ from impactlab.fem3d.solver.hexahedron import SCRATCH, Vector, W, cross, dot
 from impactlab.fem3d.solver.impulses import RULE, close_gaps
 from impactlab.fem3d.solver.material import PAST_ROWS, STRESS_ROWS, Metal, Rate
 from impactlab.fem3d.solver.mesh import BEAM, NEIGHBOURS, SPHERE, Mesh, nodal_masses
+from impactlab.fem3d.solver.springs import add_spring_forces, springs_of
 from impactlab.model.impact import Impact
 from impactlab.model.material import Material
 from impactlab.types import Floats
@@ -201,8 +202,8 @@ def integrate(
 class System:
     """Nodes with positions x (n, 3) in m and velocities v (n, 3) in m/s, half a step apart.
 
-    groups: the elements. mass: (n,) in kg. closing: (p,) distances in m by which the last step
-    parted pairs, 0 where they do not touch. All arrays are changed in place.
+    groups: the elements. springs: see springs.py. mass: (n,) in kg. closing: (p,) distances in m by
+    which the last step parted pairs, 0 where they do not touch. All arrays are changed in place.
     """
 
     def __init__(self, mesh: Mesh, impact: Impact, pool: ThreadPool) -> None:
@@ -216,6 +217,8 @@ class System:
         ]
         self.assembly = ForceAssembly(self.groups, len(mesh.nodes))
         self.forces = np.zeros((self.assembly.count, 3))
+        self.springs = springs_of(mesh, impact)
+        self._spring_rows = self.assembly.slots[self.assembly.starts[self.springs.nodes]]
         self.mass = nodal_masses(mesh, impact)
         self.inverse_mass = np.repeat(1.0 / self.mass[:, None], 3, axis=1)
         for axis, held in enumerate((mesh.symmetry_x, mesh.symmetry_y, mesh.support)):
@@ -245,7 +248,13 @@ class System:
         self.pool.run(work, MOST_THREADS)
 
     def move(self, velocity_dt: float, dt: float) -> tuple[float, float, float, bool]:
-        """Apply the elements' forces for velocity_dt (s), move the nodes by dt; see close_gaps."""
+        """Apply the elements' and springs' forces for velocity_dt (s), move the nodes by dt (s).
+
+        Returns what close_gaps does.
+        """
+        if self.springs.nodes.size:
+            places = self._spring_rows, self.mesh.nodes, self.x
+            add_spring_forces(*self.springs, *places, self.forces)
         rows = (self.assembly.starts, self.assembly.slots, self.forces)
         moved = (*rows, self.inverse_mass, self.pull, self.x, self.v, velocity_dt, dt)
         self.pool.run(lambda _, first, end: integrate((first, end), *moved), len(self.x))
@@ -262,9 +271,11 @@ _TINY = 1e-12  # seconds of motion at about 1 m/s: strains stay far below 1
 def critical_step(system: System) -> float:
     """Return 2/omega of the fastest mode in s, by Lanczos, of a system that is not yet strained.
 
-    The elements' own forces are what the eigenvalue is taken of, so no estimate stands between.
+    The elements' own forces are what the eigenvalue is taken of, so no estimate stands between; the
+    springs' matrix is diagonal.
     """
     root = np.sqrt(system.inverse_mass)
+    sprung = (system.springs.diagonal(len(root)) * system.inverse_mass).ravel()
     rows, rest = system.assembly, system.v.copy()
 
     def product(vector: Floats) -> Floats:
@@ -274,7 +285,7 @@ def critical_step(system: System) -> float:
         system.forces[:] = 0.0
         for group in system.groups:
             group.state[:], group.works[:] = 0.0, 0.0
-        return np.asarray(answer.ravel() / _TINY)
+        return np.asarray(answer.ravel() / _TINY + sprung * vector)
 
     operator = LinearOperator((root.size, root.size), matvec=product, dtype=np.float64)
     start = np.random.default_rng(0).standard_normal(root.size)

@@ -18,11 +18,13 @@ from impactlab.model.case_table import MODAL_DAMPING, NO_INTERVAL, TOO_SOON, bet
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
 from impactlab.model.further_spheres import LEAPFROG_ALONE, sphere_rows
 from impactlab.model.impact import (
+    DAMPED_BEAM,
+    FOUNDED_BEAM,
     HINGES,
     MID_SPAN,
+    MODELS_ON_SPRINGS,
     MOVING_MODELS,
     OTHER_BEAM,
-    RESISTED_BEAM,
     SPRUNG_BEAM,
 )
 from impactlab.model.parameters import PARAMETERS, SECTION, Value
@@ -31,8 +33,8 @@ from impactlab.model.quantities import shown
 from impactlab.solver import (
     BEAM_MODELS,
     BENDING_MODELS,
+    DAMPINGS,
     LUMPED_MODELS,
-    RESISTANCES,
     WAVE_MODELS,
 )
 from impactlab.study.schema.declarations import FunctionStudy, ImpactStudy, StudyFile
@@ -229,17 +231,18 @@ def _other_beams(file: StudyFile, models: set[Value]) -> Reasons:
     if models - set(MOVING_MODELS):
         reason = f"must be {' or '.join(MOVING_MODELS)} {OTHER_BEAM}"
         yield key_of("beam_model", sampling), reason
-    elif "elastic" in supports and models - set(WAVE_MODELS):
+    elif "elastic" in supports and models - set(MODELS_ON_SPRINGS):
         yield key_of("beam_model", sampling), f"must be {SPRUNG_BEAM}"
 
 
 def _resisted_beams(file: StudyFile, ends: Extremes) -> Reasons:
     """Check that what resists the motion of a beam has a model and a scheme."""
     sampling, grid = file.sampling, file.discretisation[0]
-    resisted = any(ends[name][1] > 0.0 for name in RESISTANCES)
     models = set(values_of(sampling, "beam_model", file.impact.beam_model))
-    if resisted and models - set(WAVE_MODELS):
-        yield key_of("beam_model", sampling), f"must be {RESISTED_BEAM}"
+    if any(ends[name][1] > 0.0 for name in DAMPINGS) and models - set(WAVE_MODELS):
+        yield key_of("beam_model", sampling), f"must be {DAMPED_BEAM}"
+    if ends["foundation_stiffness"][1] > 0.0 and models - set(MODELS_ON_SPRINGS):
+        yield key_of("beam_model", sampling), f"must be {FOUNDED_BEAM}"
     schemes = values_of(sampling, "scheme", grid.scheme)
     if ends["damping_ratio"][1] > 0.0 and "leapfrog" in schemes:
         yield key_of("damping_ratio", sampling), MODAL_DAMPING

@@ -91,9 +91,44 @@ def test_places_and_ends_reach_the_3d_model():
     }
     assert error == alone["clamped"]
     assert error != alone["pinned"]
-    sprung = text.replace("clamped", "elastic, stiffness_left: 1e8, rotational_stiffness_left: 1e4")
-    with pytest.raises(ValueError, match="elastic ends"):
-        design(study_of_text("sprung", sprung))
+
+
+def test_springs_and_foundation_reach_the_3d_model():
+    springs = {"stiffness_left": 1e8, "rotational_stiffness_left": 1e4}
+    keys = ", ".join(f"{name}: {value:g}" for name, value in springs.items())
+    text = TEXT.replace("base: paper", f"base: paper, beam: {{support_left: elastic, {keys}}}")
+    parameters = "{beam_model: [timoshenko, solid], foundation_stiffness: [0, 1e9]}"
+    text = text.split("sampling:")[0] + (
+        "discretisation: {element_size: 4 mm}\n"
+        f"sampling: {{method: grid, parameters: {parameters}}}\n"
+        "responses: [peak_force, energy_error]\n"
+    )
+    cases = witness.cases(design(study_of_text("sprung", text)), ALL[:4])
+    answers = witness.solve(cases[2:], HERE)
+    beam = replace(il.paper_impact().beam, support_left="elastic", **springs)
+    for error, bed in zip(answers["energy_error"], (0.0, 1e9), strict=True):
+        impact = replace(il.paper_impact(), beam=replace(beam, foundation_stiffness=bed))
+        assert error == solid.solve(impact, element_size=4e-3, duration=2e-5)["energy_error"]
+    free, bedded = answers["midspan_deflection"]
+    assert 0.0 < bedded[-1] < free[-1]
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"strikes": 3}, r"Impact\.strikes = 3: .* struck once by one sphere: set it to 1"),
+        ({"further_spheres": "0.25 1.0 0.0"}, "struck once by one sphere: leave it out"),
+        ({"mass_damping": 10.0}, r"Beam\.mass_damping = 10\.0: .* without damping"),
+        ({"damping_ratio": 0.01}, "without damping, struck once by one sphere: set it to 0"),
+    ],
+)
+def test_what_the_3d_model_leaves_out_is_refused(values, words):
+    """Of an impact of other models of the beam, too, of which `impactlab witness` is asked."""
+    impact = il.paper_impact()
+    if "damping" in next(iter(values)):
+        values = {"beam": replace(impact.beam, **values)}
+    with pytest.raises(ValueError, match=words):
+        solid.solve(replace(impact, **values), element_size=4e-3, duration=2e-6)
 
 
 def test_what_a_model_does_not_know_is_nothing_to_it(study, solved):

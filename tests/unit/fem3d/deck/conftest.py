@@ -24,11 +24,24 @@ def mesh(impact):
     return impact_mesh(impact, element_size=3e-3, ratio=2.0, coarsest=0.02)
 
 
+@pytest.fixture(scope="session")
+def sprung(impact):
+    """The same on springs at one end, clamped at the other, on a foundation."""
+    springs = {"stiffness_left": 1e7, "rotational_stiffness_left": 1e4, "foundation_stiffness": 1e9}
+    ends = {"support_left": "elastic", "support_right": "clamped"}
+    return replace(impact, beam=replace(impact.beam, **ends, **springs), strike_position=0.4)
+
+
+@pytest.fixture(scope="session")
+def sprung_mesh(sprung):
+    return impact_mesh(sprung, element_size=3e-3, ratio=2.0, coarsest=0.02)
+
+
 @pytest.fixture
 def written(tmp_path, impact, mesh):
     """Writes a deck, and returns its cards."""
 
-    def write(flavour, this=impact, **options):
+    def write(flavour, this=impact, mesh=mesh, **options):
         options.setdefault("duration", 1e-4)
         path = write_deck(tmp_path / "deck.inp", this, mesh, flavour=flavour, **options)
         return decks.cards(path)

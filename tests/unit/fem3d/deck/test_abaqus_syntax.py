@@ -19,6 +19,22 @@ def test_the_deck_is_sound(deck):
     assert abaqus_syntax.complaints(deck) == []
 
 
+def test_springs_are_sound(tmp_path, sprung, sprung_mesh):
+    path = tmp_path / "deck.inp"
+    write_deck(path, sprung, sprung_mesh, flavour="abaqus", duration=1e-4)
+    assert abaqus_syntax.complaints(path) == []
+    text = path.read_text()
+    for good, bad, words in (
+        ("SPRINGA", "SPRING1", "TYPE=SPRING1"),
+        ("*SPRING, ELSET=SPRINGS_1\n\n", "*SPRING, ELSET=SPRINGS_1\n3\n", "is not blank"),
+        ("*SPRING, ELSET=SPRINGS_1", "*SPRING, ELSET=SPRING", "SPRING is not defined"),
+        ("GROUND, 1, 3", "BASE, 1, 3", "BASE is not defined"),
+    ):
+        assert good in text
+        path.write_text(text.replace(good, bad, 1))
+        assert any(words in complaint for complaint in abaqus_syntax.complaints(path))
+
+
 @pytest.mark.parametrize("moduli", [(1e9, 0.0), (0.0, 2e9), (1e9, 2e9)])
 def test_hardening_is_sound(tmp_path, impact, mesh, moduli):
     steel = replace(

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from impactlab.fem3d.solver.mesh import BEAM, SPHERE
+from impactlab.fem3d.solver.springs import springs_of
 
 pytestmark = pytest.mark.parametrize("flavour", ["abaqus", "calculix"])
 
@@ -72,6 +73,30 @@ def test_surfaces_face_each_other_and_are_whole(written, flavour):
     assert np.all(outwards > 0.0)
     assert area.sum() == pytest.approx(np.pi * 35.0**2 / 2.0, rel=0.15)
     assert ball[:, :, 2].max() == pytest.approx(35.0, abs=12.0)
+
+
+def test_springs_of_a_deck_are_those_of_the_solver(written, sprung, sprung_mesh, flavour):
+    deck = written(flavour, sprung, sprung_mesh)
+    tables = [decks.numbers(card) for card in deck if card.keyword == "NODE"]
+    places = {int(row[0]): row[1:] for table in tables for row in table}
+    values = {card.parameters["ELSET"]: card.data for card in deck if card.keyword == "SPRING"}
+    rows = []
+    for name, ((direction,), (stiffness,)) in values.items():
+        for _, *nodes in decks.named(deck, "ELEMENT", ELSET=name).data:
+            if flavour == "abaqus":
+                ground, node = (places[int(number)] for number in nodes)
+                axis = int(np.argmax(np.abs(ground - node)))
+                assert np.count_nonzero(ground - node) == 1
+                assert abs(ground[axis]) >= 999.0  # so far away that it does not turn
+                assert int(nodes[0]) in decks.members(deck, "GROUND")
+            else:
+                axis = int(direction) - 1
+            rows.append((int(nodes[-1]) - 1, axis, 1e3 * float(stiffness)))
+    springs = springs_of(sprung_mesh, sprung)
+    expected = sorted(zip(*(values.tolist() for values in springs), strict=True))
+    np.testing.assert_allclose(sorted(rows), expected, rtol=1e-9)
+    numbers = [int(line[0]) for card in deck if card.keyword == "ELEMENT" for line in card.data]
+    assert len(set(numbers)) == len(numbers) == len(sprung_mesh.elements) + len(rows)
 
 
 def areas(faces):

@@ -1,0 +1,104 @@
+"""Springs from nodes to the ground, each along one axis: those of elastic ends and the foundation.
+
+Their resultants are those of the beam models. At an elastic end, with w the mean deflection of the
+line at mid-depth of its face, and theta = integral of z u dA/(integral of z^2 dA) the rotation of
+the face, where u is the displacement along the beam:
+
+    force  k_t w       vertical springs on the line at mid-depth, on which pinned ends rest, each by
+                       the width around its node
+    moment k_r theta   springs along the beam on all of the face, by the area A_i around each node:
+                       k_i = k_r A_i/(sum of A z^2)
+
+The second hold the axis along the beam, too, with k_r A/I, as clamped ends do; the sum of A z
+vanishes, so a rotation causes no force. A foundation of k per length lies under the bottom face,
+where a bed is, with k/B per area; its springs are vertical. Stiff springs let a step be shorter:
+they are part of system.critical_step.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from impactlab.fem3d.solver.compiler import Array, compiled
+from impactlab.fem3d.solver.estimates import end_springs
+from impactlab.fem3d.solver.lattice import Integers
+from impactlab.fem3d.solver.mesh import BEAM, Mesh, plane_faces
+from impactlab.model.impact import Impact
+from impactlab.types import Floats
+
+_X, _Z = 0, 2
+
+
+class Springs(NamedTuple):
+    """Nodes (s,) with springs along axes (s,) of 0, 1, 2; their stiffness (s,) in N/m."""
+
+    nodes: Integers
+    axes: Integers
+    stiffness: Floats
+
+    def diagonal(self, nodes: int) -> Floats:
+        """Return the stiffness in N/m of so many nodes along each axis, (nodes, 3)."""
+        total = np.zeros((nodes, 3))
+        np.add.at(total, (self.nodes, self.axes), self.stiffness)
+        return total
+
+    def energy(self, x: Floats, start: Floats) -> float:
+        """Return the energy in J at positions x; start: those without force; both (n, 3) in m."""
+        moved = x[self.nodes, self.axes] - start[self.nodes, self.axes]
+        return 0.5 * float(np.sum(self.stiffness * moved**2))
+
+
+def springs_of(mesh: Mesh, impact: Impact) -> Springs:
+    """Return the springs of the mesh's part of the beam; none of a stiffness of 0."""
+    beam, none = impact.beam, np.empty(0, dtype=np.int32)
+    sprung = [(none, _Z, np.empty(0))]
+    along = mesh.nodes[mesh.elements[mesh.body == BEAM], _X]
+    ends = zip((along.min(), along.max()), end_springs(beam), strict=True)
+    for place, (shear, turn) in list(ends)[mesh.copies == 4 :]:
+        nodes, areas = _areas(mesh, _X, place)
+        height = mesh.nodes[nodes, _Z] + 0.5 * beam.depth
+        # The part has half the width, and half of an end's springs.
+        squares = float(areas @ height**2)
+        sprung.append((nodes, _X, 0.5 * turn / squares * areas))
+        line = nodes[np.abs(height) < 1e-6 * mesh.element_size]
+        widths = _widths(mesh.nodes[line, 1])
+        sprung.append((line, _Z, 0.5 * shear / widths.sum() * widths))
+    nodes, areas = _areas(mesh, _Z, -beam.depth)
+    sprung.append((nodes, _Z, beam.foundation_stiffness / beam.width * areas))
+    axes = [np.full(nodes.size, axis, dtype=np.int32) for nodes, axis, _ in sprung]
+    stiffness = np.concatenate([values for *_, values in sprung])
+    stiff = stiffness > 0.0
+    nodes = np.concatenate([nodes for nodes, *_ in sprung])
+    return Springs(nodes[stiff], np.concatenate(axes)[stiff], stiffness[stiff])
+
+
+def _areas(mesh: Mesh, axis: int, place: float) -> tuple[Integers, Floats]:
+    """Return the beam's nodes in the plane at `place` (m) on this axis, and the area of each."""
+    moved = mesh.nodes - place * np.eye(3)[axis]
+    _, faces = plane_faces(moved, mesh.elements[mesh.body == BEAM], axis, mesh.element_size)
+    a, b, c, d = np.moveaxis(mesh.nodes[faces], 1, 0)
+    areas = 0.5 * np.linalg.norm(np.cross(c - a, d - b), axis=1)
+    nodes, corners = np.unique(faces, return_inverse=True)
+    around = np.bincount(corners.ravel(), weights=np.repeat(0.25 * areas, 4))
+    return nodes, np.asarray(around, dtype=float)
+
+
+def _widths(y: Floats) -> Floats:
+    """Return the width around each node of a line, in the unit of y."""
+    order = np.argsort(y)
+    halves = 0.5 * np.diff(y[order])
+    widths = np.empty_like(y)
+    widths[order] = np.append(halves, 0.0) + np.append(0.0, halves)
+    return widths
+
+
+@compiled
+def add_spring_forces(
+    nodes: Array, axes: Array, stiffness: Array, rows: Array, start: Array, x: Array, forces: Array
+) -> None:
+    """Add the springs' forces to rows (s,) of forces in N; others: see Springs."""
+    for spring in range(nodes.size):
+        node, axis = nodes[spring], axes[spring]
+        forces[rows[spring], axis] += stiffness[spring] * (x[node, axis] - start[node, axis])
