@@ -10,7 +10,8 @@ import pytest
 import whole_sphere
 
 from impactlab.fem3d.deck import write_deck
-from impactlab.fem3d.solver import impact_mesh
+from impactlab.fem3d.solver import impact_mesh, solve_on
+from impactlab.fem3d.solver.springs import springs_of
 from impactlab.model.bodies import Beam, Sphere
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.verification.solutions import hertz
@@ -44,6 +45,17 @@ def check_read(screen, mesh, sets=18):
     assert counted(screen, "nodes") == len(mesh.nodes) + inner
     assert counted(screen, "sets") == sets
     assert counted(screen, "materials") == 3  # and the surface interaction
+
+
+@calculix.needed
+def test_a_deck_with_springs_is_read_and_steps(tmp_path, sprung, sprung_mesh):
+    found = calculix.run(small_deck(tmp_path, sprung, sprung_mesh, plastic=False))
+    assert found.code == 0
+    assert "Job finished" in found.screen
+    assert "*ERROR" not in found.screen
+    assert "*WARNING" not in found.screen
+    springs = springs_of(sprung_mesh, sprung).nodes.size
+    assert counted(found.screen, "elements") == len(sprung_mesh.elements) + springs
 
 
 @calculix.needed
@@ -123,6 +135,43 @@ def test_elastic_impact_on_a_large_block_is_hertzs(tmp_path):
     assert end(times, quarter) == pytest.approx(duration, rel=0.02)
     impulse = 4.0 * np.trapezoid(quarter, times)
     assert impulse == pytest.approx(2.0 * mass * 0.5, rel=0.01)  # nothing is lost
+
+
+HELD = {
+    "clamped": {"support_left": "clamped", "support_right": "free"},
+    "elastic": {
+        **{"support_left": "elastic", "support_right": "clamped", "foundation_stiffness": 1e9},
+        **{"stiffness_left": 2e7, "rotational_stiffness_left": 2e4},
+    },
+}
+
+
+@calculix.needed
+@pytest.mark.long
+@pytest.mark.parametrize("ends", HELD.values(), ids=HELD.keys())
+def test_a_half_answers_as_our_own_3d_model(tmp_path, ends):
+    """Elastic, of a beam so short that its ends matter before the contact is over."""
+    paper = paper_impact()
+    beam, sphere = (
+        replace(body, material=replace(body.material, yield_stress=50e9))
+        for body in (replace(paper.beam, span=0.2, **ends), paper.sphere)
+    )
+    this = replace(paper, beam=beam, sphere=sphere, strike_position=0.4, gravity=0.0)
+    mesh = impact_mesh(this, element_size=1.5e-3, ratio=2.0, coarsest=14e-3, patch=3e-3)
+    path = tmp_path / "half.inp"
+    steps = {"duration": 3e-4, "interval": 1e-5}
+    write_deck(path, this, mesh, flavour="calculix", plastic=False, **steps)
+    found = calculix.run(path)
+    assert found.code == 0
+    run = solve_on(mesh, this, duration=3.1e-4)
+    times, forces = found.contact()
+    force = np.interp(times, run["time"], run["contact_force"])
+    assert 2.0 * forces[:, 2].max() == pytest.approx(force.max(), rel=0.02)
+    impulse = 2.0 * np.trapezoid(forces[:, 2], times)
+    assert impulse == pytest.approx(np.trapezoid(force, times), rel=0.02)
+    times, places = found.table("displacements")
+    ours = 1e3 * np.interp(times, run["time"], run["midspan_deflection"])
+    np.testing.assert_allclose(-places[:, 0, 3], ours, rtol=0.0, atol=0.03 * ours.max())
 
 
 def peak(times, forces):
