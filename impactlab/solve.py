@@ -12,10 +12,9 @@ import numpy as np
 from impactlab.jit import precompile
 from impactlab.model.beam_modes import mode_keys, mode_table
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.further_spheres import VISCOUS
 from impactlab.model.impact import Impact
 from impactlab.model.section import fibre_table
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, SCHEMES
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, SCHEMES, WAVE_MODELS
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.growth import by_strike
@@ -50,8 +49,7 @@ def solve(
     """Run the kernels over a case table, on the calling thread and without the GIL.
 
     samples: length of each history (0: none). profiles: keep the fields along the beam, for which
-    all cases must share nodes and points; raises ValueError where they do not, or where further
-    spheres meet what their kernel lacks. strikes: the largest number that a case has, or more, to
+    all cases must share nodes and points; raises ValueError where they do not. strikes: the largest number that a case has, or more, to
     keep what solver.outputs.SERIES has of each (0: none). by_sphere: keep the answers of further
     spheres. Returns by name, of R runs: the fields of solver.outputs.RESPONSE, (R,); histories,
     (R, samples); profiles, (R, nodes, points), or (R, nodes) for the deflection; series,
@@ -73,8 +71,6 @@ def solve(
     models, schemes = cases["beam_model"], cases["scheme"]
     further = [make_table(cases, samples)] if cases["further"].any() else []
     kinds = np.stack([models, schemes, is_extended(cases), mode_keys(cases)])
-    if further and kinds[2].any():
-        raise ValueError(f"further_spheres: {VISCOUS}")
     starts = np.flatnonzero(np.diff(kinds, prepend=-1).any(axis=0))
     for start, end in itertools.pairwise((*starts, runs)):
         model, scheme, extended, _ = kinds[:, start]
@@ -85,7 +81,7 @@ def solve(
         kernel_of(model, scheme, bool(extended), bool(further))(
             cases[start:end],
             table[start:end],
-            Table(*(rows[start:end] for rows in further[0]))
+            Table(*(rows[start:end] for rows in further[0][:-1]), mode_table(cases[start]))
             if further
             else mode_table(cases[start]),
             *(array[start:end] for array in arrays),
@@ -141,8 +137,8 @@ def compile_kernels(
         kind: dict[str, Any] = {"model": model, "scheme": scheme}
         kind["law"] = "hunt_crossley" if more else "hertz"
         kind["spheres"] = "0.25 1 0" if spheres else None
-        alone = scheme == "leapfrog" and model in BEAM_MODELS and not spheres
-        if alone or (model in BENDING_MODELS and not (spheres and (more or scheme == "modal"))):
+        models = BENDING_MODELS if scheme == "modal" else WAVE_MODELS if spheres else BEAM_MODELS
+        if model in models:
             number = BEAM_MODELS.index(model), SCHEMES.index(scheme)
             programs[kernel_of(*number, more, spheres)] = _COMPILE.format(**kind)
     precompile(programs)

@@ -47,7 +47,7 @@ def has_table(cases: Any) -> Any:
     """Return which cases need a table of modes: by the modal scheme, and not of sines."""
     pinned = SUPPORTS.index("pinned")
     sines = (cases["support_left"] == pinned) & (cases["support_right"] == pinned)
-    sines &= cases["strike_position"] == 0.5
+    sines &= (cases["strike_position"] == 0.5) & (cases["further"] == 0)
     return (cases["scheme"] == SCHEMES.index("modal")) & ~sines
 
 
@@ -83,26 +83,40 @@ def _springs(cases: Any) -> Array:
 
 
 def mode_table(case: Any) -> Array:
-    """Return the table of a case's modes, see `_table`; without any entry where it needs none."""
+    """Return the table of a case's modes, see `_table`; without any entry where it needs none.
+
+    Further spheres have a column each, of the modes left out at their node alone.
+    """
     if not has_table(case):
         return np.empty((0, 0))
     left, right = _springs(np.atleast_1d(case))[..., 0].tolist()
     nodes = int(case["nodes"])
-    struck = round(float(case["strike_position"]) * (nodes - 1))
-    return _table((tuple(left), tuple(right)), nodes, struck)
+    ends, struck = (tuple(left), tuple(right)), round(float(case["strike_position"]) * (nodes - 1))
+    places = case["further_spheres"][: case["further"], 0]
+    table, columns = _table(ends, nodes, struck, places.size == 0), []
+    first = int(ends[0] == _SPRINGS["pinned"])
+    for node in np.rint(places * (nodes - 1)).astype(int).tolist():
+        column = np.zeros((len(table), 1))
+        column[0], column[3 + node - first] = table[0, -1], 1.0 / _LEAST
+        column[1] = _LEAST**2 * _table(ends, nodes, node, False)[1, -1]
+        columns.append(column)
+    return np.concatenate([table, *columns], axis=1)
 
 
 @functools.lru_cache(maxsize=16)
-def _table(ends: tuple[tuple[float, float], ...], nodes: int, struck: int) -> Array:
+def _table(
+    ends: tuple[tuple[float, float], ...], nodes: int, struck: int, symmetric: bool
+) -> Array:
     """Return the table of the modes of a beam with so many nodes.
 
     Columns: the n modes that the nodes can tell apart, and the sum of those left out. Rows: b^2;
     the square of phi at the struck node, of those left out the flexibility there; the share of
     sine and cosine in phi there; then phi, and the curvature, at each node that solver/beam.py
-    moves, both over phi at the struck node. ends: k_t and k_r, left and right.
+    moves, both over phi at the struck node. ends: k_t and k_r, left and right. symmetric: whether the
+    middle is struck alone.
     """
     springs, spacings = np.array(ends), nodes - 1
-    halved = ends[0] == ends[1] and 2 * struck == spacings
+    halved = symmetric and ends[0] == ends[1] and 2 * struck == spacings
     solved = spacings // 2 if halved else spacings
     moved = solved + 1 - np.isinf(springs[: 1 if halved else 2, 0]).sum()
     first = int(ends[0] == _SPRINGS["pinned"])  # the first and the last node of the solver

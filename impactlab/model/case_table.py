@@ -14,7 +14,7 @@ from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import case_fields
 from impactlab.model.cost import flies
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.further_spheres import LEAPFROG_ALONE, PLACE_OF_ITS_OWN, sphere_rows
+from impactlab.model.further_spheres import PLACE_OF_ITS_OWN, sphere_rows
 from impactlab.model.impact import Impact
 from impactlab.model.laminate import LEAST_FIBRES, layer_rows
 from impactlab.model.parameters import (
@@ -146,12 +146,10 @@ def _is_long_on_foundation(cases: Any) -> Any:
 
 
 def _check_further(cases: np.ndarray[Any, Any], run: str, first_run: int) -> None:
-    """Raise ValueError where further spheres have no node, or another scheme."""
+    """Raise ValueError where further spheres have no node of their own."""
     for row, case in enumerate(cases if cases["further"].any() else (), first_run):
         places = case.further_spheres[: case.further, 0]
         reasons = [between_nodes(float(place), int(case.nodes)) for place in places]
-        if case.scheme != SCHEMES.index("leapfrog"):
-            reasons.append(LEAPFROG_ALONE)
         nodes = np.rint(np.append(places, case.strike_position) * (case.nodes - 1))
         if np.unique(nodes).size < nodes.size:
             reasons.append(PLACE_OF_ITS_OWN)

@@ -40,6 +40,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from impactlab.model.further_spheres import sphere_rows
 from impactlab.model.impact import OTHER_SECTION, Impact
 from impactlab.model.shapes import Rectangle
 from impactlab.solver import RESISTANCES
@@ -280,9 +281,21 @@ def _within_table(impact: Impact, applies: np.ndarray[Any, Any], refused: str) -
         )
     if np.any(applies & (beam.span < LEAST_SPAN * np.maximum(beam.depth, beam.width))):
         raise ValueError(f"{refused}needs a span of {LEAST_SPAN:g} depths and widths at least")
-    place = np.asarray(impact.strike_position)
+    place, near = np.asarray(impact.strike_position), 0.5 * LEAST_SPAN
+    near = near * np.maximum(beam.depth, beam.width)
+    others = [row[0] for row in sphere_rows(impact.further_spheres or ())]
+    for k, other in enumerate(others):
+        room = np.minimum(other, 1.0 - other)
+        for neighbour in (place, *others[:k]):
+            room = np.minimum(room, np.abs(neighbour - other))
+        if np.any(applies & (room * beam.span < near)):
+            raise ValueError(
+                f"{refused}needs further_spheres {0.5 * LEAST_SPAN:g} depths and widths from each "
+                "other and from the ends at least: change their strike_position, or set it to "
+                f"{TIMOSHENKO_OPTIONS[refused.split(' = ')[0].split('.')[1]]}"
+            )
     room = np.minimum(place, 1.0 - place) * beam.span
-    if np.any(applies & (room < 0.5 * LEAST_SPAN * np.maximum(beam.depth, beam.width))):
+    if np.any(applies & (room < near)):
         raise ValueError(
             f"{refused}needs a strike {0.5 * LEAST_SPAN:g} depths and widths from the ends at "
             "least: change strike_position, or set it to "

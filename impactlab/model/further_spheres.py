@@ -9,20 +9,19 @@ import numpy as np
 
 from impactlab.model.checks import require
 from impactlab.model.quantities import si
-from impactlab.solver import BENDING_MODELS, RESISTANCES
+from impactlab.solver import WAVE_MODELS
 from impactlab.solver.types import SPHERES
 
 _UNITS = {"strike_position": "1", "velocity": "m s-1", "delay": "s"}
 EXAMPLE = "[{strike_position: 0.25, velocity: 3 m/s, delay: 0.5 ms}]"
 _AS = f"must be a list of spheres, 1 to {SPHERES}, as {EXAMPLE}, or as text '0.25 3 0.0005' in SI"
-LEAPFROG_ALONE = (
-    "must be left out with scheme: modal, which has one sphere: change it, or set scheme: leapfrog"
-)
-"""Why the modal scheme has none."""
 PLACE_OF_ITS_OWN = "must have a place of its own each: strikes and strike_interval repeat a strike"
 """Why two spheres cannot strike one node."""
-VISCOUS = "must be left out with a viscous contact law, which has one sphere: change either"
-"""Why laws with damping have none."""
+PRESTRESSED = (
+    "must be ignored with further_spheres, for the kink that dents leave is that of one of them: "
+    "change it, or leave them out"
+)
+"""Why a contact's prestress is that of one sphere."""
 
 
 def sphere_rows(spheres: Any) -> tuple[tuple[float, ...], ...]:
@@ -73,18 +72,15 @@ def spheres_text(impact: Any) -> str | None:
     places = [place for place, _, _ in rows]
     lone = len(set(places)) == len(places) and not np.isin(impact.strike_position, places).any()
     require(lone, *field, PLACE_OF_ITS_OWN)
-    beam, end = impact.beam, "with further_spheres: change it, or leave them out"
+    end = "with further_spheres: change it, or leave them out"
     needs: tuple[tuple[str, str, Any, Any, str], ...] = (
-        ("Impact", "beam_model", impact, BENDING_MODELS, " or ".join(BENDING_MODELS)),
+        ("Impact", "beam_model", impact, WAVE_MODELS, " or ".join(WAVE_MODELS)),
         ("Impact", "load", impact, ("point",), "point"),
         ("Impact", "strikes", impact, (1,), "1"),
-        *(("Beam", name, beam, (0.0,), "0") for name in RESISTANCES),
-        *(
-            ("Material", f"rate_{name}", beam.material, (0.0,), "0")
-            for name in ("coefficient", "sensitivity")
-        ),
     )
     for owner, name, node, holds, needed in needs:
         value = getattr(node, name)
         require(np.isin(value, holds), owner, name, value, f"must be {needed} {end}")
+    ignored = np.equal(impact.contact_prestress, "ignored")
+    require(ignored, "Impact", "contact_prestress", impact.contact_prestress, PRESTRESSED)
     return ", ".join(" ".join(map(repr, row)) for row in rows)

@@ -253,6 +253,21 @@ def strike(w: Array, now: int, u: Array, F: float, grid: BeamGrid) -> None:
 
 
 @compiled
+def push_nodes(
+    beam: BeamState, grid: BeamGrid, now: int, nodes: Array, forces: Array, share: float
+) -> None:
+    """Add a share of the forces (N) on nodes of the whole beam to a step already made."""
+    for k in range(nodes.size):
+        if forces[k] != 0.0:
+            i = nodes[k]
+            change = share * grid.push * forces[k] / copies(grid, i)
+            beam.u[i] += change
+            beam.du[i] += change
+            beam.w[1 - now, i] += change
+    mirror(beam.w, now, beam.u, grid)
+
+
+@compiled
 def mirror(w: Array, now: int, u: Array, grid: BeamGrid) -> None:
     """Set the nodes at and beyond both ends after a step."""
     after, last = 1 - now, grid.last

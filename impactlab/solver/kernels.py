@@ -20,7 +20,6 @@ from impactlab.solver import (
     resistance,
     resisted_modes,
     responses,
-    several_spheres,
     strip,
     timoshenko,
     von_karman,
@@ -42,6 +41,7 @@ from impactlab.solver.outputs import (
     ENERGY_OUT_OF_BALANCE,
 )
 from impactlab.solver.section import FibreSection, Room, cut_section, make_room, with_rate
+from impactlab.solver.several_spheres import with_spheres
 from impactlab.solver.stability import discretise, grid_of, struck_node
 from impactlab.solver.state import BeamModel, State
 from impactlab.solver.types import CONTACT_PATCH, MODAL, Array, Record
@@ -300,7 +300,16 @@ _EXTENDED = {
     "spring_mass": _EXTENDED_LUMPED,
     "rigid": _EXTENDED_LUMPED,
 }
-_SEVERAL_SPHERES = _kernel("several_spheres", several_spheres.MODEL)
+_SPHERES_ON_EULER_BERNOULLI = _kernel(
+    "spheres_on_euler_bernoulli", with_spheres(resistance.MODEL), True
+)
+_SEVERAL = {
+    "euler_bernoulli": _SPHERES_ON_EULER_BERNOULLI,
+    "elastic": _SPHERES_ON_EULER_BERNOULLI,
+    "timoshenko": _kernel("spheres_on_timoshenko", with_spheres(strip.MODEL), True),
+    "von_karman": _kernel("spheres_on_von_karman", with_spheres(von_karman.MODEL), True),
+}
+_SEVERAL_MODAL = _kernel("spheres_modal", with_spheres(resisted_modes.MODEL), True)
 _MODAL = (_kernel("modal", modal.MODEL), _kernel("extended_modal", resisted_modes.MODEL, True))
 
 
@@ -323,8 +332,8 @@ def kernel_of(
 
     extended: see _kernel. several: whether of further spheres.
     """
-    if several:
-        return _SEVERAL_SPHERES
     if scheme == MODAL:
-        return _MODAL[extended]
+        return _SEVERAL_MODAL if several else _MODAL[extended]
+    if several:
+        return _SEVERAL[BEAM_MODELS[beam_model]]
     return (_EXTENDED if extended else _LEAPFROG)[BEAM_MODELS[beam_model]]

@@ -191,7 +191,7 @@ def _audit(model: BeamModel) -> Callable[..., float]:
     return imbalance
 
 
-def _contact(model: BeamModel, extended: bool) -> Callable[..., tuple[float, float, float]]:
+def contact_of(model: BeamModel, extended: bool) -> Callable[..., tuple[float, float, float]]:
     """Return the contact of a sphere with a model of the beam; extended: see kernels.py."""
     mid_curvature, sag, beneath = model.curvature, model.sag, model.beneath
     lift, moments, bend_back = model.lift, model.moments, model.bend_back
@@ -250,7 +250,7 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
     """Return the time loop of a model of the beam; extended: see kernels.py."""
     move_beam, mid_curvature, spread = model.step, model.curvature, model.spread
     flight_stride, fly = model.flight_stride, None if model.flight is None else _leaps(model.flight)
-    touch, imbalance = _contact(model, extended), _audit(model)
+    touch, imbalance = contact_of(model, extended), _audit(model)
     touch_down = _touch_down(model)
 
     @inlined

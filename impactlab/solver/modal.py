@@ -58,11 +58,14 @@ from impactlab.solver.jit import allocating, compiled, inlined
 from impactlab.solver.modes import (
     Modes,
     add_moment,
+    curvature_change,
     deflect,
     make_modes,
     modal_energy,
     mode_curvature,
     move_modes,
+    place,
+    push_modes,
     rest_modes,
     settle_modes,
     span,
@@ -72,7 +75,7 @@ from impactlab.solver.section import FibreSection, bend
 from impactlab.solver.settle import ROUNDS, yields_at_rest
 from impactlab.solver.state import BeamModel, Flight, State
 from impactlab.solver.strain_rate import RateLaw
-from impactlab.solver.types import Record
+from impactlab.solver.types import Array, Record
 
 _STEPS_UNSEEN = 8.0
 """Steps, at the present pace, for which sections far from yielding are left alone."""
@@ -143,7 +146,7 @@ def bend_sections(
 
 @allocating
 def _make(case: Record, section: FibreSection, grid: BeamGrid) -> Modes:
-    return make_modes(grid, section.stiffness, section.yield_curvature)
+    return make_modes(grid, section.stiffness, section.yield_curvature, case.further)
 
 
 @compiled
@@ -363,6 +366,26 @@ def _land(state: State, w: float) -> None:
     land(state.extra.leaps, w)
 
 
+@compiled
+def _push(state: State, now: int, nodes: Array, forces: Array) -> float:
+    """As state.py has it; with forces of 0, too, this sets deflection and step of the nodes."""
+    modes, w, u, mid = state.extra, state.beam.w, state.beam.u, state.grid.mid
+    moved, work, pushed = 0.0, 0.0, False
+    for k in range(nodes.size):
+        if forces[k] != 0.0:
+            moved += push_modes(modes, nodes[k], forces[k])
+            pushed = True
+    if pushed:
+        modes.slack[1], modes.leaps.memory[FRESH] = curvature_change(modes), 0
+        w[1 - now, mid] += moved
+        u[mid] += moved
+    for k in range(nodes.size):
+        i = nodes[k]
+        w[1 - now, i], u[i] = place(modes.q, modes.table, i), place(modes.u, modes.table, i)
+        work += forces[k] * u[i]
+    return 0.5 * work
+
+
 FLIGHT = Flight(_leap, _retrace, _largest, _land)
 MODEL = BeamModel(
     _make,
@@ -376,4 +399,5 @@ MODEL = BeamModel(
     renew=_renew,
     take=take_modes,
     settle=_settle,
+    push=_push,
 )

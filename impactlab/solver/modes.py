@@ -21,15 +21,17 @@ from impactlab.solver.types import Array
 class Modes(NamedTuple):
     """The modes of a run, n of them, and the sum of those left out in entry n.
 
+    Further entries, m - n - 1 of them, are what those left out add at each further sphere.
+
     q: amplitude (m), by the deflection at the struck node. u: dt dq/dt half a step before (m). k2:
     the largest curvature per amplitude, k_p^2 of sines (1/m2). D: see modal.py. push:
-    D/K (m/N). source (N): sum over the nodes of M_0 times the mode's curvature. Each (n + 1,).
-    bent: curvature of node i per amplitude, (last + 3, n + 1), 1/m2; nodes as in beam.py. seen: q
-    when all sections were last looked at, (n + 1,). near: the number of sections that could yield
+    D/K (m/N). source (N): sum over the nodes of M_0 times the mode's curvature. Each (m,).
+    bent: curvature of node i per amplitude, (last + 3, m), 1/m2; nodes as in beam.py. seen: q
+    when all sections were last looked at, (m,). near: the number of sections that could yield
     before the next such look, then which they are, (last,). slack: what the curvature of any other
     may have changed by until that look, and can have changed by now (1/m), (2,). cosine: of quarter
     turns over n, (4 n,). leaps: see flight.py. table: that of model/beam_modes.py, (3 + 2 last - 2,
-    n + 1); of sines without any entry.
+    m); of sines without any entry.
     """
 
     q: Array
@@ -58,12 +60,15 @@ def has_sines(grid: BeamGrid) -> bool:
 
 
 @allocating
-def make_modes(grid: BeamGrid, EI: float, yield_curvature: float) -> Modes:
-    """Return the modes, at rest, as many as nodes move; those of others than sines are blank."""
+def make_modes(grid: BeamGrid, EI: float, yield_curvature: float, further: int = 0) -> Modes:
+    """Return the modes, at rest, as many as nodes move; those of others than sines are blank.
+
+    further: number of further spheres.
+    """
     n = grid.last - 1
     for kind in (grid.left, grid.right):
         n -= 1 if kind == CLAMPED else 0
-    sines = has_sines(grid)
+    sines, size = has_sines(grid), n + 1 + further
     cosine = np.zeros(4 * n)
     for i in range(n):
         cosine[i] = math.cos(0.5 * math.pi * i / n)
@@ -71,23 +76,29 @@ def make_modes(grid: BeamGrid, EI: float, yield_curvature: float) -> Modes:
     for i in range(2 * n + 1, 4 * n):
         cosine[i] = cosine[4 * n - i]
     modes = Modes(
-        np.empty(n + 1),
-        np.empty(n + 1),
-        np.empty(n + 1),
-        np.empty(n + 1),
-        np.empty(n + 1),
-        np.empty(n + 1),
-        np.zeros((grid.last + 3, n + 1)),
-        np.empty(n + 1),
+        np.empty(size),
+        np.empty(size),
+        np.empty(size),
+        np.empty(size),
+        np.empty(size),
+        np.empty(size),
+        np.zeros((grid.last + 3, size)),
+        np.empty(size),
         np.empty(grid.last, dtype=np.int64),
         np.empty(2),
         cosine,
-        make_leaps(n + 1, grid.last - 1),
-        np.zeros((0 if sines else 1 + 2 * grid.last, 0 if sines else n + 1)),
+        make_leaps(size, grid.last - 1),
+        np.zeros((0 if sines else 1 + 2 * grid.last, 0 if sines else size)),
     )
     if sines:
         rest_modes(modes, grid, EI, yield_curvature)
     return modes
+
+
+@compiled
+def count(modes: Modes) -> int:
+    """Return the number n of modes, without entries for those left out."""
+    return modes.cosine.size // 4
 
 
 @compiled
@@ -139,13 +150,13 @@ def span(grid: BeamGrid) -> float:
 
 @compiled
 def _scale_table(modes: Modes, grid: BeamGrid, EI: float) -> None:
-    n, length, table = modes.q.size - 1, span(grid), modes.table
+    n, length, table = count(modes), span(grid), modes.table
     speed, mass = grid.dt * math.sqrt(EI / grid.mu) / length**2, grid.mu * length
-    for p in range(n + 1):
+    for p in range(modes.q.size):
         b2 = table[0, p]
         D = 4.0 * math.sin(0.5 * min(speed * b2, 0.5 * math.pi)) ** 2
         modes.D[p] = D if b2 > 0.0 else _RIGID
-        if p == n:
+        if p >= n:
             modes.push[p] = D * table[1, p] * length**3 / EI
         elif b2 > 0.0:
             modes.push[p] = D * table[1, p] * length**3 / (EI * b2 * b2)
@@ -175,6 +186,36 @@ def mode_curvature(q: Array, bent: Array, i: int) -> float:
     for p in range(q.size):
         kappa += bent[i, p] * q[p]
     return kappa
+
+
+@fused
+def place(amplitudes: Array, table: Array, i: int) -> float:
+    """Return the deflection at node i of amplitudes of the modes (m), by their table."""
+    w = 0.0
+    for p in range(amplitudes.size):
+        w += table[1 + i, p] * amplitudes[p]
+    return w
+
+
+@fused
+def push_modes(modes: Modes, i: int, F: float) -> float:
+    """Add the force F (N) on node i to a step; return what it adds at the struck node (m)."""
+    q, u, push, table, moved = modes.q, modes.u, modes.push, modes.table, 0.0
+    for p in range(q.size):
+        change = push[p] * table[1 + i, p] * F
+        u[p] += change
+        q[p] += change
+        moved += change
+    return moved
+
+
+@fused
+def curvature_change(modes: Modes) -> float:
+    """Return what any curvature can have changed by since all were last looked at (1/m)."""
+    q, k2, seen, change = modes.q, modes.k2, modes.seen, 0.0
+    for p in range(q.size):
+        change += k2[p] * abs(q[p] - seen[p])
+    return change
 
 
 @vectorised
@@ -229,7 +270,7 @@ def deflect(modes: Modes, w: Array, now: int, last: int) -> None:
     """Set the nodes' deflections w[now] (m) at the beginning of the last step."""
     for i in range(2, last + 1):
         w[now, i] = 0.0
-        for p in range(modes.q.size - 1):
+        for p in range(count(modes)):
             if modes.table.size > 0:
                 w[now, i] += modes.table[1 + i, p] * (modes.q[p] - modes.u[p])
             else:

@@ -23,7 +23,14 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver import euler_bernoulli
-from impactlab.solver.beam import BeamGrid, BeamState, bending_energy, copies, mirror
+from impactlab.solver.beam import (
+    BeamGrid,
+    BeamState,
+    bending_energy,
+    copies,
+    mirror,
+    push_nodes,
+)
 from impactlab.solver.fibre_plasticity import plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, vectorised
 from impactlab.solver.section import FibreSection
@@ -190,4 +197,26 @@ def _settle(state: State) -> None:
     settle(beam, plastic, section, grid, extra.bed * grid.mu / grid.dt**2)
 
 
-MODEL = BeamModel(_make, _step, _curvature, _energy, euler_bernoulli.deflected, _spread, _settle)
+@compiled
+def _push(state: State, now: int, nodes: Array, forces: Array) -> float:
+    grid, u, extra, work = state.grid, state.beam.u, state.extra, 0.0
+    push_nodes(state.beam, grid, now, nodes, forces, 1.0 / (1.0 + extra.h))
+    front = extra.front
+    for k in range(nodes.size):
+        if forces[k] != 0.0:
+            front[0] = min(front[0], max(nodes[k] - 2, 2))
+            front[2] = max(front[2], min(nodes[k] + 2, grid.last))
+            work += forces[k] * u[nodes[k]]
+    return 0.0 if extra.acts else 0.5 * work  # `before` knows of all forces
+
+
+MODEL = BeamModel(
+    _make,
+    _step,
+    _curvature,
+    _energy,
+    euler_bernoulli.deflected,
+    _spread,
+    _settle,
+    push=_push,
+)

@@ -35,7 +35,7 @@ from impactlab.solver.beam import BeamGrid
 from impactlab.solver.fibre_plasticity import plastic_energy
 from impactlab.solver.flight import FRESH, WAIT
 from impactlab.solver.jit import allocating, compiled, fused, inlined, summing
-from impactlab.solver.modes import Modes, make_modes, rest_modes, span, take_modes
+from impactlab.solver.modes import Modes, count, make_modes, rest_modes, span, take_modes
 from impactlab.solver.section import FibreSection
 from impactlab.solver.state import BeamModel, Flight, State
 from impactlab.solver.types import Array, Record
@@ -44,6 +44,7 @@ _PLAIN_STEP, _PLAIN_ENERGY = modal.MODEL.step, modal.MODEL.energy
 _PLAIN_CURVATURE, _PLAIN_DEFLECT = modal.MODEL.curvature, modal.MODEL.deflect
 _PLAIN_SPREAD = modal.MODEL.spread
 _PLAIN_SETTLE: Any = modal.MODEL.settle
+_PLAIN_PUSH: Any = modal.MODEL.push
 _PLAIN_LEAP, _PLAIN_RETRACE, _PLAIN_LARGEST, _PLAIN_LAND = modal.FLIGHT
 _LEFT_OUT = 3.0 / 7.0
 """Of the foundation, of the modes left out: their sum of k^-8 over that of k^-4 and the first."""
@@ -66,7 +67,7 @@ class ResistedModes(NamedTuple):
 @allocating
 def make(case: Record, section: FibreSection, grid: BeamGrid) -> ResistedModes:
     """Return modes at rest, which renew makes those of a case."""
-    modes = make_modes(grid, section.stiffness, section.yield_curvature)
+    modes = make_modes(grid, section.stiffness, section.yield_curvature, case.further)
     size = modes.q.size
     return ResistedModes(
         modes, np.ones(size), np.zeros(size), np.zeros(size), np.zeros(2, dtype=np.int64)
@@ -98,7 +99,7 @@ def _resist(extra: ResistedModes, case: Record, grid: BeamGrid, EI: float) -> No
     for p in range(modes.q.size):
         bending, flexibility = _angle(modes, grid, EI, p) ** 2, modes.push[p] / modes.D[p]
         if bending > 0.0:
-            share = 1.0 if p < modes.q.size - 1 else _LEFT_OUT
+            share = 1.0 if p < count(modes) else _LEFT_OUT
             flexibility /= 1.0 + share * bed / bending
         elif bed > 0.0:
             flexibility = modes.push[p] / bed
@@ -247,6 +248,12 @@ def _settle(state: State) -> None:
     _PLAIN_SETTLE(_plain(state))
 
 
+@compiled
+def _push(state: State, now: int, nodes: Array, forces: Array) -> float:
+    surplus = _PLAIN_PUSH(_plain(state), now, nodes, forces)
+    return 0.0 if state.extra.acts[0] else surplus  # `before` knows of all forces
+
+
 MODEL = BeamModel(
     make,
     _step,
@@ -259,4 +266,5 @@ MODEL = BeamModel(
     flight=Flight(_leap, _retrace, _largest, _land),
     renew=renew,
     take=take,
+    push=_push,
 )

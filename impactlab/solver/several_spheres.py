@@ -1,53 +1,54 @@
-"""Several spheres on the Euler-Bernoulli beam, by leapfrog.
+"""Several spheres on one beam, of any model and scheme that can be pushed beside its struck node.
 
 The time loop (leapfrog.py) moves the first sphere; for it, the others are a part of the beam. Each
 touches the beam at its node after its delay, whatever the beam does by then:
 
     m_s w_s'' = -F + m_s g,  w_s = w, w_s' = v at the delay;  F of w_s - w by the contact law.
 
-A delay falls between two steps: w there is that of a straight line, and the sphere moves as without
-a force until the later of them, an error of second order in the step. Spheres are alike and
-undented, and their contacts do not know of each other.
+Its contact is that of the time loop, in whose grid its node is the struck one: local compliance and
+a strip's bending across are those there. A delay falls between two steps: w there is that of a
+straight line, and the sphere moves as without a force until the later of them, an error of second
+order in the step. Spheres are alike and undented, and their contacts know of each other through the
+beam alone.
 
-The balance of energy has what each sphere has lost since its touch, and what its contact holds. The
-kinetic energy of the beam is that of the velocities before and after a step, of which
-euler_bernoulli.py finds those before without the other spheres' pushes.
+The balance of energy has what each sphere has lost since its touch, and what its contact holds.
+Leaps (flight.py) are made until the first of these spheres comes.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from impactlab.solver import euler_bernoulli, event_tracker
-from impactlab.solver.beam import copies, mirror
-from impactlab.solver.contact.history import CONTACT, Pair, energies
+from impactlab.solver import event_tracker
+from impactlab.solver.beam import BeamGrid
+from impactlab.solver.contact.history import CONTACT, energies
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.jit import allocating, compiled, inlined
-from impactlab.solver.leapfrog import contact_force, fill_samples
+from impactlab.solver.leapfrog import contact_of, fill_samples
 from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE, STRUCK_NEAR_END, blank
 from impactlab.solver.responses import read_contact, read_inputs, read_rebound
-from impactlab.solver.state import BeamModel, FurtherSpheres, State
+from impactlab.solver.state import BeamModel, Flight, FurtherSpheres, State
 from impactlab.solver.types import Array, Record, record
 
-MOTION = record("velocity delay v v_before w w_0 u_before change", integers="node step begun")
+MOTION = record("velocity delay v v_before w w_0 u_before face", integers="step begun")
 """Of a sphere: velocity (m/s) at first touch, delay (s); v, v_before (m/s): after and before the
 step; w (m): displacement after it, counted as the beam's deflection, w_0: at first touch. u_before
-(m): u of its node before the step, change: what its push adds. node; step: number of steps made;
-begun: whether it has touched the beam."""
+(m): u of its node before the step, face: where the struck face was a step ago, before the touch.
+step: number of steps made; begun: whether it has touched the beam."""
 
-_PLAIN_STEP, _PLAIN_CURVATURE = euler_bernoulli.MODEL.step, euler_bernoulli.MODEL.curvature
-_PLAIN_ENERGY = euler_bernoulli.MODEL.energy
 _WHOLE_RUN = DIVERGED | ENERGY_OUT_OF_BALANCE
 
 
 class Table(NamedTuple):
     """K further spheres in each of R runs.
 
-    fastest: the cases, each with the sphere that asks for the smallest step, (R,). motions,
+    fastest: the cases, each with a sphere that asks for the smallest step, (R,). motions,
     contacts, events: records to work in; answers: RESPONSE records, filled, all (R, K). samples:
-    those of kernels.py, filled, (R, K, 5, S), of which the force is of use.
+    those of kernels.py, filled, (R, K, 5, S), of which the force is of use. modes: the table of
+    model/beam_modes.py that all runs share, or empty.
     """
 
     fastest: Array
@@ -56,22 +57,26 @@ class Table(NamedTuple):
     events: Array
     answers: Array
     samples: Array
+    modes: Array
 
 
 class Further(NamedTuple):
-    """The state of a run besides the beam's: front, that of euler_bernoulli.py, and spheres (K,).
+    """The state of a run besides the beam's: beam, that of its model, and spheres (K,).
 
-    steps: number of steps of the run; mass (kg) and gravity (m/s2) of each sphere.
+    nodes: theirs; forces: on them in this step (N); surplus: what the model's energy then has too
+    much (J), (1,). steps: number of steps of the run.
     """
 
-    front: Array
+    beam: Any
+    case: Record
     motions: Array
     contacts: Array
     events: Array
     samples: Array
+    nodes: Array
+    forces: Array
+    surplus: Array
     steps: int
-    mass: float
-    gravity: float
 
 
 def make_table(cases: Array, samples: int) -> Table:
@@ -80,7 +85,10 @@ def make_table(cases: Array, samples: int) -> Table:
     rows = cases["further_spheres"][:, :count]
     fastest, motions = cases.copy(), np.zeros(rows.shape[:2], MOTION)
     motions["velocity"], motions["delay"] = rows[..., 1], rows[..., 2]
-    fastest["velocity"] = np.maximum(cases["velocity"], rows[..., 1].max(axis=1))
+    come = motions["delay"] <= cases["duration"][:, np.newaxis]
+    # one contact takes at most the energy of all spheres
+    squares = cases["velocity"] ** 2 + np.sum(come * rows[..., 1] ** 2, axis=1)
+    fastest["velocity"] = np.where(come.any(axis=1), np.sqrt(squares), cases["velocity"])
     ends = np.isin(rows[..., 0], (0.0, 1.0)).any(axis=1)
     fastest["strike_position"][ends] = 0.0  # half the mass to push
     return Table(
@@ -90,112 +98,46 @@ def make_table(cases: Array, samples: int) -> Table:
         np.zeros(motions.shape, EVENTS),
         blank(motions.size).reshape(motions.shape),
         np.zeros((*motions.shape, 5, samples)),
+        np.empty((0, 0)),
     )
 
 
 @allocating  # what it returns counts its owners
 def _join(state: State, table: Table, r: int, case: Record) -> Further:
-    """Return the front and the spheres of run r, before any touches the beam."""
-    grid = state.grid
-    for k in range(table.motions.shape[1]):
-        sphere, contact, events = table.motions[r, k], table.contacts[r, k], table.events[r, k]
-        place = case.further_spheres[k, 0]
-        sphere.node = grid.first - 1 + int(place * (case.nodes - 1) + 0.5)
+    """Return the beam and the spheres of run r, before any touches it."""
+    grid, count = state.grid, table.motions.shape[1]
+    nodes = np.empty(count, dtype=np.int64)
+    for k in range(count):
+        contact, events = table.contacts[r, k], table.events[r, k]
+        nodes[k] = grid.first - 1 + int(case.further_spheres[k, 0] * (case.nodes - 1) + 0.5)
         event_tracker.start(events, contact, 0)
         events.contacts = events.touching = 0.0
     return Further(
         state.extra,
+        case,
         table.motions[r],
         table.contacts[r],
         table.events[r],
         table.samples[r],
+        nodes,
+        np.zeros(count),
+        np.zeros(1),
         round(case.duration / grid.dt),
-        case.sphere_mass,
-        case.gravity,
     )
 
 
 @inlined
-def _plain(state: State) -> State:
-    """Return the state of the beam as euler_bernoulli.py has it."""
+def _beam(state: State) -> State:
+    """Return the state of the beam as its model has it."""
     pair, section, grid, beam, plastic, extra = state
-    return State(pair, section, grid, beam, plastic, extra.front)
-
-
-@compiled
-def _touch(sphere: Record, events: Record, w: float, t: float, dt: float, gravity: float) -> None:
-    """Let a sphere touch the beam t (s) before this step, at which the node is at w (m)."""
-    sphere.begun, share = 1, t / dt
-    sphere.w_0 = w - share * sphere.u_before
-    sphere.w = sphere.w_0 + sphere.velocity * t + 0.5 * gravity * t * t
-    sphere.v = sphere.velocity + gravity * (t - 0.5 * dt)
-    events.w = events.w_before = events.w_max = w
-    if sphere.w > w or t == 0.0:  # else the beam moves away
-        events.contacts = events.touching = 1.0
-
-
-@compiled
-def _push(state: State, pair: Pair, k: int, now: int) -> None:
-    """Move a sphere by one step, and push its node, which has been moved without it."""
-    grid, extra, w, u = state.grid, state.extra, state.beam.w, state.beam.u
-    sphere, contact, events = extra.motions[k], extra.contacts[k], extra.events[k]
-    i, dt, step = sphere.node, grid.dt, sphere.step
-    t = step * dt - sphere.delay
-    sphere.step = step + 1
-    if t < 0.0:
-        return
-    if sphere.begun == 0:
-        _touch(sphere, events, w[now, i], t, dt, extra.gravity)
-    before, delta = events.F, sphere.w - w[now, i]
-    F = contact_force(contact, events, pair, delta, t, dt)
-    sphere.v_before = sphere.v
-    event_tracker.update_events(
-        events, delta, contact.delta_r, w[now, i], F, sphere.v_before, t, dt
-    )
-    sphere.v += dt * (extra.gravity - F / extra.mass)
-    sphere.w += dt * sphere.v
-    sphere.change = grid.push * F / min(copies(grid, i), 1.0)  # more at a free end
-    u[i] += sphere.change
-    w[1 - now, i] += sphere.change
-    front = extra.front
-    front[0], front[2] = min(front[0], max(i - 2, 2)), max(front[2], min(i + 2, grid.last))
-    samples = extra.samples[k]
-    if samples.shape[1] > 0:
-        start, end = (before, 0.0, 0.0, 0.0, 0.0), (F, 0.0, 0.0, 0.0, 0.0)
-        fill_samples(samples, step, extra.steps, start, end)
+    return State(pair, section, grid, beam, plastic, extra.beam)
 
 
 @inlined
-def _step(state: State, now: int, F: float) -> None:
-    motions, u = state.extra.motions, state.beam.u
-    for k in range(motions.size):
-        motions[k].u_before = u[motions[k].node]
-    _PLAIN_STEP(_plain(state), now, F)
-    for k in range(motions.size):
-        _push(state, state.pair, k, now)
-    mirror(state.beam.w, now, u, state.grid)
-
-
-@compiled
-def _curvature(state: State, now: int) -> float:
-    return _PLAIN_CURVATURE(_plain(state), now)
-
-
-@compiled
-def _energy(state: State, now: int, F: float, u_mid: float) -> float:
-    grid, u, extra = state.grid, state.beam.u, state.extra
-    energy = _PLAIN_ENERGY(_plain(state), now, F, u_mid)
-    for k in range(extra.motions.size):
-        sphere, events = extra.motions[k], extra.events[k]
-        if sphere.begun == 1:
-            stored, lost = energies(extra.contacts[k], state.pair, events.delta)
-            pushed = copies(grid, sphere.node) * u[sphere.node] * sphere.change
-            fallen = sphere.w - grid.dt * sphere.v - sphere.w_0
-            square = sphere.v_before * sphere.v - sphere.velocity * sphere.velocity
-            energy += stored + lost - 0.5 * grid.mu * grid.dx / grid.dt**2 * pushed
-            energy += extra.mass * (0.5 * square - extra.gravity * fallen)
-            events.v_s, events.v_mid = sphere.v_before, sphere.u_before / grid.dt
-    return energy
+def _beam_at(state: State, node: int) -> State:
+    """Return the same with another struck node."""
+    pair, section, grid, beam, plastic, extra = state
+    return State(pair, section, BeamGrid(node, *grid[1:]), beam, plastic, extra.beam)
 
 
 @compiled
@@ -203,34 +145,205 @@ def _brought(state: State) -> float:
     motions, squares = state.extra.motions, 0.0
     for k in range(motions.size):
         squares += motions[k].begun * motions[k].velocity ** 2
-    return float(0.5 * state.extra.mass * squares)
+    return float(0.5 * state.extra.case.sphere_mass * squares)
 
 
-@compiled
-def _read(state: State, case: Record, answer: Record, answers: Array) -> None:
-    """Fill in the answers of the further spheres; remark in the run's what they add."""
-    extra, pair, grid = state.extra, state.pair, state.grid
-    for k in range(extra.motions.size):
-        other, events, contact = answers[k], extra.events[k], extra.contacts[k]
-        if answer.status & _WHOLE_RUN:
-            other.status = answer.status & _WHOLE_RUN
-            continue
-        read_contact(other, events, contact, pair)
-        read_inputs(other, case, contact, pair)
-        read_rebound(other, case, events)
-        place = (extra.motions[k].node - grid.first + 1) * grid.dx
-        near = min(place, case.beam_span - place) < case.beam_depth
-        answer.remarks |= other.remarks | (STRUCK_NEAR_END if near else 0)
+def _presses(model: BeamModel) -> Any:
+    """Return a function that takes a further sphere on by a step."""
+    touch, sag, curvature = contact_of(model, True), model.sag, model.curvature
+
+    @inlined
+    def begin(state: State, k: int, now: int, t: float) -> None:
+        """Let a sphere touch the beam t (s) before this step, or note where its struck face is."""
+        pair, section, grid, beam, plastic = state[:5]
+        case, i, dt = state.extra.case, state.extra.nodes[k], grid.dt
+        sphere, contact, events = (
+            state.extra.motions[k],
+            state.extra.contacts[k],
+            state.extra.events[k],
+        )
+        face, shift = beam.w[now, i], 0.0
+        if sag is not None:
+            face += sag(_beam_at(state, i))
+        if pair.bending != 0.0:
+            elastic = plastic.M_0[i] / section.stiffness - curvature(_beam_at(state, i), now)
+            shift = pair.bending * elastic
+        face += shift
+        if t >= 0.0:
+            sphere.begun, contact.shift = 1, shift
+            sphere.w_0 = face - t / dt * (face - sphere.face)
+            sphere.w = sphere.w_0 + sphere.velocity * t + 0.5 * case.gravity * t * t
+            sphere.v = sphere.velocity + case.gravity * (t - 0.5 * dt)
+            events.w = events.w_before = events.w_max = beam.w[now, i]
+            if sphere.w > face or t == 0.0:  # else the beam moves away
+                events.contacts = events.touching = 1.0
+        sphere.face = face
+
+    @compiled
+    def press(state: State, k: int, now: int) -> None:
+        """Find the force of a sphere where a step begins, and move the sphere."""
+        extra, dt = state.extra, state.grid.dt
+        sphere, contact, events = extra.motions[k], extra.contacts[k], extra.events[k]
+        case, step, w = extra.case, sphere.step, state.beam.w[now, extra.nodes[k]]
+        t = step * dt - sphere.delay
+        sphere.step = step + 1
+        if sphere.begun == 0:
+            begin(state, k, now, t)
+        if t < 0.0:
+            return
+        before, place = events.F, _beam_at(state, extra.nodes[k])
+        F, approach, _ = touch(case, place, contact, events, now, sphere.w - w, t)
+        sphere.v_before = sphere.v
+        event_tracker.update_events(events, approach, contact.delta_r, w, F, sphere.v, t, dt)
+        sphere.v += dt * (case.gravity - F / case.sphere_mass)
+        sphere.w += dt * sphere.v
+        extra.forces[k] = F
+        samples = extra.samples[k]
+        if samples.shape[1] > 0:
+            start, end = (before, 0.0, 0.0, 0.0, 0.0), (F, 0.0, 0.0, 0.0, 0.0)
+            fill_samples(samples, step, extra.steps, start, end)
+
+    return press
 
 
-_PLAIN: Any = euler_bernoulli.MODEL
-MODEL = BeamModel(
-    _PLAIN.make,
-    _step,
-    _curvature,
-    _energy,
-    euler_bernoulli.deflected,
-    _PLAIN.spread,
-    settle=None,
-    further=FurtherSpheres(_join, _read, _brought),
-)
+def _reads(model: BeamModel) -> Any:
+    """Return a function that reads the answers of further spheres."""
+    lift = model.lift
+
+    @compiled
+    def read(state: State, case: Record, answer: Record, answers: Array) -> None:
+        extra, pair, grid = state.extra, state.pair, state.grid
+        for k in range(extra.motions.size):
+            other, events, contact = answers[k], extra.events[k], extra.contacts[k]
+            if answer.status & _WHOLE_RUN:
+                other.status = answer.status & _WHOLE_RUN
+                continue
+            read_contact(other, events, contact, pair)
+            read_inputs(other, case, contact, pair)
+            if lift is not None:
+                other.permanent_indentation += lift(_beam(state), contact, 0.0)
+            read_rebound(other, case, events)
+            place = (extra.nodes[k] - grid.first + 1) * grid.dx
+            near = min(place, case.beam_span - place) < case.beam_depth
+            answer.remarks |= other.remarks | (STRUCK_NEAR_END if near else 0)
+
+    return read
+
+
+def _leaps(model: BeamModel) -> Flight | None:
+    """Return the leaps of a model, which end before a further sphere comes."""
+    if model.flight is None:
+        return None
+    plain_leap, plain_retrace, plain_largest, plain_land = model.flight
+    push: Any = model.push
+
+    @inlined
+    def leap(
+        state: State, now: int, gap: float, sphere: tuple[float, float], w_max: float, room: int
+    ) -> int:
+        extra, dt = state.extra, state.grid.dt
+        for k in range(extra.motions.size):
+            other = extra.motions[k]
+            if other.begun == 1:
+                return 0
+            room = min(room, int(math.ceil(other.delay / dt)) - 1 - other.step)
+        leapt = plain_leap(_beam(state), now, gap, sphere, w_max, room)
+        if leapt > 0:
+            push(_beam(state), 1 - now, extra.nodes, extra.forces)
+            for k in range(extra.motions.size):
+                extra.motions[k].step += leapt
+        return leapt
+
+    @compiled
+    def retrace(state: State) -> tuple[float, float]:
+        return plain_retrace(_beam(state))
+
+    @inlined
+    def largest(state: State, w_max: float) -> float:
+        return plain_largest(_beam(state), w_max)
+
+    @compiled
+    def land(state: State, w: float) -> None:
+        plain_land(_beam(state), w)
+
+    return Flight(leap, retrace, largest, land)
+
+
+def with_spheres(model: BeamModel) -> BeamModel:
+    """Return a model of the beam that moves further spheres, too.
+
+    Without prestress, whose kink is that of one contact.
+    """
+    model = model._replace(moments=None, bend_back=None)
+    move_beam, plain_energy, plain_curvature = model.step, model.energy, model.curvature
+    plain_deflect, plain_spread, plain_take = model.deflect, model.spread, model.take
+    plain_sag, plain_beneath, plain_lift = model.sag, model.beneath, model.lift
+    press, push = _presses(model), model.push
+
+    @inlined
+    def step(state: State, now: int, F: float) -> None:
+        extra, u = state.extra, state.beam.u
+        for k in range(extra.motions.size):
+            extra.motions[k].u_before = u[extra.nodes[k]]
+            press(state, k, now)
+        move_beam(_beam(state), now, F)
+        extra.surplus[0] = push(_beam(state), now, extra.nodes, extra.forces)
+
+    @compiled
+    def curvature(state: State, now: int) -> float:
+        return plain_curvature(_beam(state), now)
+
+    @compiled
+    def energy(state: State, now: int, F: float, u_mid: float) -> float:
+        dt, extra = state.grid.dt, state.extra
+        total = plain_energy(_beam(state), now, F, u_mid) - extra.surplus[0]
+        for k in range(extra.motions.size):
+            sphere, events = extra.motions[k], extra.events[k]
+            if sphere.begun == 1:
+                stored, lost = energies(extra.contacts[k], state.pair, events.delta)
+                fallen = sphere.w - dt * sphere.v - sphere.w_0
+                square = sphere.v_before * sphere.v - sphere.velocity * sphere.velocity
+                total += stored + lost
+                total += extra.case.sphere_mass * (0.5 * square - extra.case.gravity * fallen)
+                events.v_s, events.v_mid = sphere.v_before, sphere.u_before / dt
+        return total
+
+    @compiled
+    def deflect(state: State, now: int) -> None:
+        plain_deflect(_beam(state), now)
+
+    @compiled
+    def spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
+        return plain_spread(_beam(state), now, F, a)
+
+    @compiled
+    def take(extra: Any, table: Table) -> None:
+        plain_take(extra, table.modes)
+
+    @compiled
+    def sag(state: State) -> float:
+        return plain_sag(_beam(state))
+
+    @compiled
+    def beneath(state: State, now: int, F: float) -> float:
+        return plain_beneath(_beam(state), now, F)
+
+    @compiled
+    def lift(state: State, contact: Record, F: float) -> float:
+        return plain_lift(_beam(state), contact, F)
+
+    return model._replace(
+        step=step,
+        curvature=curvature,
+        energy=energy,
+        deflect=deflect,
+        spread=spread,
+        settle=None,
+        flight=_leaps(model),
+        take=None if plain_take is None else take,
+        sag=None if plain_sag is None else sag,
+        beneath=None if plain_beneath is None else beneath,
+        lift=None if plain_lift is None else lift,
+        push=None,
+        further=FurtherSpheres(_join, _reads(model), _brought),
+    )

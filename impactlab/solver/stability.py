@@ -23,6 +23,9 @@ dt <= sqrt(2/contact), where n modes and the sum of those left out count 4/3 + 7
 times as much at a free end, where modes are twice as large. That is mostly far beyond, which few
 indentations show.
 
+Contacts of several spheres push nodes and spheres of their own, so that by leapfrog the largest term
+of one of them counts. Modes are pushed by all, and the sum of these terms bounds what they do.
+
 A damper c of the contact (N s/m) counts as 4 c/dt beside k_c (contact_damping.py). With h, a half
 (modal: the whole) of c dt times what k_c is multiplied by, this makes the largest dt smaller by
 sqrt(1 + h^2) - h. Leapfrog's lagging damping beta of the bending stiffness (resistance.py) adds
@@ -146,8 +149,8 @@ def _further_push(case: Record) -> float:
     share = 1.0 / 3.0 + 7.0 / (6.0 * half_spacings(case.nodes))
     if case.strike_position == 0.0 or case.strike_position == 1.0:
         return 4.0 * (1.0 + share + _UNEVEN) - 2.0
-    pinned = case.support_left == PINNED and case.support_right == PINNED
-    return share if pinned and case.strike_position == 0.5 else share + _UNEVEN
+    sines = case.support_left == PINNED and case.support_right == PINNED and case.further == 0
+    return share if sines and case.strike_position == 0.5 else share + _UNEVEN
 
 
 @compiled
@@ -163,6 +166,7 @@ def largest_time_step(case: Record, pair: Pair, EI: float, dx: float) -> float:
     if case.scheme == MODAL:
         wave = dx * math.sqrt(case.beam_density / case.beam_youngs_modulus)
         push += _further_push(case) / (mu * dx)
+        push += case.further * (push - 1.0 / case.sphere_mass)
         about = _SAFETY * stiffest_contact(case, pair, _COARSE_GROWTH)
         if about * push * wave * wave < 2.0 and not is_damped(pair.law):
             return wave

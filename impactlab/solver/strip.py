@@ -42,7 +42,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver import timoshenko
-from impactlab.solver.beam import CLAMPED, SYMMETRIC, BeamGrid
+from impactlab.solver.beam import CLAMPED, SYMMETRIC, BeamGrid, push_nodes
 from impactlab.solver.contact.axis_lift import axis_lift
 from impactlab.solver.contact_patch import spread_over_nodes
 from impactlab.solver.fibre_plasticity import curvature, plastic_energy
@@ -317,6 +317,19 @@ def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
     return ahead, 0.0
 
 
+@compiled
+def _push(state: State, now: int, nodes: Array, forces: Array) -> float:
+    grid, strip = state.grid, state.extra
+    push_nodes(state.beam, grid, now, nodes, forces, 1.0 / (1.0 + strip.resistance.h))
+    if strip.inertia > 0.0:
+        for k in range(nodes.size):
+            i, change = nodes[k], grid.dt**2 / strip.inertia * strip.lever * forces[k] / grid.dx
+            strip.d_rate[i] -= change
+            strip.rate[i] -= change
+            strip.s[i] -= change
+    return 0.0
+
+
 MODEL = timoshenko.MODEL._replace(
     make=_make,
     step=_step,
@@ -329,4 +342,5 @@ MODEL = timoshenko.MODEL._replace(
     moments=_moments,
     bend_back=_bend_back,
     settle=_settle,
+    push=_push,
 )

@@ -44,6 +44,7 @@ from impactlab.solver.beam import (
     end_springs,
     is_end,
     mirror,
+    push_nodes,
 )
 from impactlab.solver.contact_patch import spread_over_nodes
 from impactlab.solver.fibre_plasticity import PlasticState, plastic_energy
@@ -414,6 +415,13 @@ def _settle(state: State) -> None:
             break
 
 
+@compiled
+def _push(state: State, now: int, nodes: Array, forces: Array) -> float:
+    share = 1.0 / (1.0 + state.extra.resistance.h)
+    push_nodes(state.beam, state.grid, now, nodes, forces, share)
+    return 0.0
+
+
 MODEL = BeamModel(
     _make,
     _step,
@@ -423,4 +431,5 @@ MODEL = BeamModel(
     _spread,
     settle=_settle,
     section=(make_whole_room, cut_whole_section),
+    push=_push,
 )

@@ -16,7 +16,7 @@ from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
 from impactlab.model.case_table import MODAL_DAMPING, NO_INTERVAL, TOO_SOON, between_nodes
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
-from impactlab.model.further_spheres import LEAPFROG_ALONE, sphere_rows
+from impactlab.model.further_spheres import sphere_rows
 from impactlab.model.impact import (
     DAMPED_BEAM,
     FOUNDED_BEAM,
@@ -249,7 +249,7 @@ def _resisted_beams(file: StudyFile, ends: Extremes) -> Reasons:
 
 
 def _several_strikes(file: StudyFile, ends: Extremes) -> Reasons:
-    """Check that strikes wait for those before, and that further spheres have node and scheme."""
+    """Check that strikes wait for those before, and that further spheres have nodes."""
     sampling, grid = file.sampling, file.discretisation[0]
     interval = ends.get("strike_interval", (file.duration,))[0]
     if ends["strikes"][1] == 1 and "strike_interval" in ends:
@@ -266,8 +266,6 @@ def _several_strikes(file: StudyFile, ends: Extremes) -> Reasons:
             if reason := between_nodes(place, nodes):
                 yield key, f"{place:g} {reason}"
                 return
-    if spheres and "modal" in values_of(sampling, "scheme", grid.scheme):
-        yield key, LEAPFROG_ALONE
 
 
 def _further_models(file: StudyFile) -> Reasons:
