@@ -49,9 +49,9 @@ def solve(
     """Run the kernels over a case table, on the calling thread and without the GIL.
 
     samples: length of each history (0: none). profiles: keep the fields along the beam, for which
-    all cases must share nodes and points; raises ValueError where they do not. strikes: the largest number that a case has, or more, to
-    keep what solver.outputs.SERIES has of each (0: none). by_sphere: keep the answers of further
-    spheres. Returns by name, of R runs: the fields of solver.outputs.RESPONSE, (R,); histories,
+    all cases must share nodes and points; raises ValueError where they do not. strikes: the
+    largest number that a case has, or more, to keep what solver.outputs.SERIES has of each (0:
+    none). by_sphere: keep the answers of further spheres. Returns by name, of R runs: the fields of solver.outputs.RESPONSE, (R,); histories,
     (R, samples); profiles, (R, nodes, points), or (R, nodes) for the deflection; series,
     (R, strikes), NaN beyond those of the case, and variables.OF_STRIKES; of several spheres,
     variables.BY_SPHERE, (R, spheres) or (R, spheres, samples).
@@ -78,12 +78,11 @@ def solve(
         fibres = np.full((2, end - start, nodes, points if stretches else points // 2), np.nan)
         kind = [BEAM_MODELS[model]], [SCHEMES[scheme]], [bool(extended)], [bool(further)]
         compile_kernels(*kind)
+        modes = mode_table(cases[start])
         kernel_of(model, scheme, bool(extended), bool(further))(
             cases[start:end],
             table[start:end],
-            Table(*(rows[start:end] for rows in further[0][:-1]), mode_table(cases[start]))
-            if further
-            else mode_table(cases[start]),
+            _rows(further[0], start, end, modes) if further else modes,
             *(array[start:end] for array in arrays),
             *fibres,
         )
@@ -101,6 +100,11 @@ def solve(
         columns["plastic_strain"], columns["equivalent_plastic_strain"] = strains
         columns["deflection"] = deflection
     return columns
+
+
+def _rows(table: Table, start: int, end: int, modes: np.ndarray[Any, Any]) -> Table:
+    """Return the rows of some runs, with the modes that they share."""
+    return Table._make([*(rows[start:end] for rows in table[:-1]), modes])
 
 
 def _by_sphere(columns: dict[str, Any], table: Table) -> dict[str, np.ndarray[Any, Any]]:

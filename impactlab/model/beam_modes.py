@@ -112,8 +112,8 @@ def _table(
     Columns: the n modes that the nodes can tell apart, and the sum of those left out. Rows: b^2;
     the square of phi at the struck node, of those left out the flexibility there; the share of
     sine and cosine in phi there; then phi, and the curvature, at each node that solver/beam.py
-    moves, both over phi at the struck node. ends: k_t and k_r, left and right. symmetric: whether the
-    middle is struck alone.
+    moves, both over phi at the struck node. ends: k_t and k_r, left and right. symmetric: whether
+    no other node is struck.
     """
     springs, spacings = np.array(ends), nodes - 1
     halved = symmetric and ends[0] == ends[1] and 2 * struck == spacings

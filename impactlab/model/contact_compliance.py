@@ -283,7 +283,7 @@ def _within_table(impact: Impact, applies: np.ndarray[Any, Any], refused: str) -
         raise ValueError(f"{refused}needs a span of {LEAST_SPAN:g} depths and widths at least")
     place, near = np.asarray(impact.strike_position), 0.5 * LEAST_SPAN
     near = near * np.maximum(beam.depth, beam.width)
-    others = [row[0] for row in sphere_rows(impact.further_spheres or ())]
+    others: list[Any] = [row[0] for row in sphere_rows(impact.further_spheres or ())]
     for k, other in enumerate(others):
         room = np.minimum(other, 1.0 - other)
         for neighbour in (place, *others[:k]):

@@ -120,8 +120,7 @@ class Impact:
         Further spheres like `sphere`, at most 8: the `strike_position` of each, which no other has,
         its `velocity`, and its `delay` (by default 0), the time from the first sphere's touch to
         its own; or rows of these in SI. Scalar responses are those of the first sphere. They need
-        the beam models "euler_bernoulli" or "elastic" and the scheme "leapfrog", one strike, a
-        point load, a contact law without damping, and neither damping, foundation nor strain rate
+        a beam model whose nodes move, one strike, a point load and no `contact_prestress`
         (solver/several_spheres.py). Kept as text, "0.25 3.0 0.0005".
 
     Raises

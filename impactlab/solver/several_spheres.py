@@ -64,11 +64,12 @@ class Further(NamedTuple):
     """The state of a run besides the beam's: beam, that of its model, and spheres (K,).
 
     nodes: theirs; forces: on them in this step (N); surplus: what the model's energy then has too
-    much (J), (1,). steps: number of steps of the run.
+    much (J), (1,). run: its row of `fastest`; steps: number of its steps.
     """
 
     beam: Any
-    case: Record
+    fastest: Array
+    run: int
     motions: Array
     contacts: Array
     events: Array
@@ -114,7 +115,8 @@ def _join(state: State, table: Table, r: int, case: Record) -> Further:
         events.contacts = events.touching = 0.0
     return Further(
         state.extra,
-        case,
+        table.fastest,
+        r,
         table.motions[r],
         table.contacts[r],
         table.events[r],
@@ -145,7 +147,7 @@ def _brought(state: State) -> float:
     motions, squares = state.extra.motions, 0.0
     for k in range(motions.size):
         squares += motions[k].begun * motions[k].velocity ** 2
-    return float(0.5 * state.extra.case.sphere_mass * squares)
+    return float(0.5 * state.extra.fastest[state.extra.run].sphere_mass * squares)
 
 
 def _presses(model: BeamModel) -> Any:
@@ -156,7 +158,7 @@ def _presses(model: BeamModel) -> Any:
     def begin(state: State, k: int, now: int, t: float) -> None:
         """Let a sphere touch the beam t (s) before this step, or note where its struck face is."""
         pair, section, grid, beam, plastic = state[:5]
-        case, i, dt = state.extra.case, state.extra.nodes[k], grid.dt
+        i, dt, gravity = state.extra.nodes[k], grid.dt, state.extra.fastest[state.extra.run].gravity
         sphere, contact, events = (
             state.extra.motions[k],
             state.extra.contacts[k],
@@ -172,8 +174,8 @@ def _presses(model: BeamModel) -> Any:
         if t >= 0.0:
             sphere.begun, contact.shift = 1, shift
             sphere.w_0 = face - t / dt * (face - sphere.face)
-            sphere.w = sphere.w_0 + sphere.velocity * t + 0.5 * case.gravity * t * t
-            sphere.v = sphere.velocity + case.gravity * (t - 0.5 * dt)
+            sphere.w = sphere.w_0 + sphere.velocity * t + 0.5 * gravity * t * t
+            sphere.v = sphere.velocity + gravity * (t - 0.5 * dt)
             events.w = events.w_before = events.w_max = beam.w[now, i]
             if sphere.w > face or t == 0.0:  # else the beam moves away
                 events.contacts = events.touching = 1.0
@@ -184,7 +186,7 @@ def _presses(model: BeamModel) -> Any:
         """Find the force of a sphere where a step begins, and move the sphere."""
         extra, dt = state.extra, state.grid.dt
         sphere, contact, events = extra.motions[k], extra.contacts[k], extra.events[k]
-        case, step, w = extra.case, sphere.step, state.beam.w[now, extra.nodes[k]]
+        case, step, w = extra.fastest[extra.run], sphere.step, state.beam.w[now, extra.nodes[k]]
         t = step * dt - sphere.delay
         sphere.step = step + 1
         if sphere.begun == 0:
@@ -246,7 +248,7 @@ def _leaps(model: BeamModel) -> Flight | None:
             other = extra.motions[k]
             if other.begun == 1:
                 return 0
-            room = min(room, int(math.ceil(other.delay / dt)) - 1 - other.step)
+            room = min(room, math.ceil(other.delay / dt) - 1 - other.step)
         leapt = plain_leap(_beam(state), now, gap, sphere, w_max, room)
         if leapt > 0:
             push(_beam(state), 1 - now, extra.nodes, extra.forces)
@@ -269,6 +271,27 @@ def _leaps(model: BeamModel) -> Flight | None:
     return Flight(leap, retrace, largest, land)
 
 
+def _touched(model: BeamModel) -> dict[str, Any]:
+    """Return what else the contact of the first sphere asks of a model."""
+    plain_sag, plain_beneath, plain_lift = model.sag, model.beneath, model.lift
+    if plain_sag is None or plain_beneath is None or plain_lift is None:
+        return {}
+
+    @compiled
+    def sag(state: State) -> float:
+        return plain_sag(_beam(state))
+
+    @compiled
+    def beneath(state: State, now: int, F: float) -> float:
+        return plain_beneath(_beam(state), now, F)
+
+    @compiled
+    def lift(state: State, contact: Record, F: float) -> float:
+        return plain_lift(_beam(state), contact, F)
+
+    return {"sag": sag, "beneath": beneath, "lift": lift}
+
+
 def with_spheres(model: BeamModel) -> BeamModel:
     """Return a model of the beam that moves further spheres, too.
 
@@ -276,9 +299,10 @@ def with_spheres(model: BeamModel) -> BeamModel:
     """
     model = model._replace(moments=None, bend_back=None)
     move_beam, plain_energy, plain_curvature = model.step, model.energy, model.curvature
-    plain_deflect, plain_spread, plain_take = model.deflect, model.spread, model.take
-    plain_sag, plain_beneath, plain_lift = model.sag, model.beneath, model.lift
-    press, push = _presses(model), model.push
+    plain_deflect, plain_spread = model.deflect, model.spread
+    plain_take: Any = model.take
+    push: Any = model.push
+    press = _presses(model)
 
     @inlined
     def step(state: State, now: int, F: float) -> None:
@@ -295,7 +319,7 @@ def with_spheres(model: BeamModel) -> BeamModel:
 
     @compiled
     def energy(state: State, now: int, F: float, u_mid: float) -> float:
-        dt, extra = state.grid.dt, state.extra
+        dt, extra, case = state.grid.dt, state.extra, state.extra.fastest[state.extra.run]
         total = plain_energy(_beam(state), now, F, u_mid) - extra.surplus[0]
         for k in range(extra.motions.size):
             sphere, events = extra.motions[k], extra.events[k]
@@ -304,7 +328,7 @@ def with_spheres(model: BeamModel) -> BeamModel:
                 fallen = sphere.w - dt * sphere.v - sphere.w_0
                 square = sphere.v_before * sphere.v - sphere.velocity * sphere.velocity
                 total += stored + lost
-                total += extra.case.sphere_mass * (0.5 * square - extra.case.gravity * fallen)
+                total += case.sphere_mass * (0.5 * square - case.gravity * fallen)
                 events.v_s, events.v_mid = sphere.v_before, sphere.u_before / dt
         return total
 
@@ -320,18 +344,6 @@ def with_spheres(model: BeamModel) -> BeamModel:
     def take(extra: Any, table: Table) -> None:
         plain_take(extra, table.modes)
 
-    @compiled
-    def sag(state: State) -> float:
-        return plain_sag(_beam(state))
-
-    @compiled
-    def beneath(state: State, now: int, F: float) -> float:
-        return plain_beneath(_beam(state), now, F)
-
-    @compiled
-    def lift(state: State, contact: Record, F: float) -> float:
-        return plain_lift(_beam(state), contact, F)
-
     return model._replace(
         step=step,
         curvature=curvature,
@@ -341,9 +353,7 @@ def with_spheres(model: BeamModel) -> BeamModel:
         settle=None,
         flight=_leaps(model),
         take=None if plain_take is None else take,
-        sag=None if plain_sag is None else sag,
-        beneath=None if plain_beneath is None else beneath,
-        lift=None if plain_lift is None else lift,
         push=None,
         further=FurtherSpheres(_join, _reads(model), _brought),
+        **_touched(model),
     )

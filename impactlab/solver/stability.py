@@ -23,8 +23,8 @@ dt <= sqrt(2/contact), where n modes and the sum of those left out count 4/3 + 7
 times as much at a free end, where modes are twice as large. That is mostly far beyond, which few
 indentations show.
 
-Contacts of several spheres push nodes and spheres of their own, so that by leapfrog the largest term
-of one of them counts. Modes are pushed by all, and the sum of these terms bounds what they do.
+Contacts of several spheres push nodes and spheres of their own, so that by leapfrog the largest
+term of one of them counts. Modes are pushed by all, and the sum of these terms bounds what they do.
 
 A damper c of the contact (N s/m) counts as 4 c/dt beside k_c (contact_damping.py). With h, a half
 (modal: the whole) of c dt times what k_c is multiplied by, this makes the largest dt smaller by

@@ -14,13 +14,21 @@ pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
 GRID = il.Discretisation(nodes=41)
 PAPER = replace(il.paper_impact(5.0), strike_position=0.25)
+BEAMS = pytest.mark.parametrize(
+    ("model", "scheme"),
+    [
+        *((model, "leapfrog") for model in ("euler_bernoulli", "timoshenko", "von_karman")),
+        ("euler_bernoulli", "modal"),
+    ],
+)
 
 
-def test_mirrored_spheres_do_the_same():
+@BEAMS
+def test_mirrored_spheres_do_the_same(model, scheme):
     """Yielding fibres are mirrored with the rest."""
-    impact = replace(PAPER, velocity=20.0)
+    impact, grid = replace(PAPER, velocity=20.0, beam_model=model), replace(GRID, scheme=scheme)
     impact = replace(impact, further_spheres=[{"strike_position": 0.75, "velocity": "20 m/s"}])
-    run = il.simulate(impact, GRID, duration="1.5 ms", samples=101)
+    run = il.simulate(impact, grid, duration="1.5 ms", samples=101)
     assert run.peak_plastic_strain.item() > 1e-3
     w, force = run.deflection.values, run.contact_force_of_spheres.values
     assert w == pytest.approx(w[::-1], rel=1e-9)
@@ -33,10 +41,12 @@ def test_mirrored_spheres_do_the_same():
         assert second == pytest.approx(first, rel=1e-9), name
 
 
-def test_a_sphere_that_comes_too_late_changes_no_bit():
-    alone = il.simulate(PAPER, GRID, duration="2 ms", samples=101)
-    late = replace(PAPER, further_spheres="0.6 5 0.002001")
-    both = il.simulate(late, GRID, duration="2 ms", samples=101)
+@BEAMS
+def test_a_sphere_that_comes_too_late_changes_no_bit(model, scheme):
+    impact, grid = replace(PAPER, beam_model=model), replace(GRID, scheme=scheme)
+    alone = il.simulate(impact, grid, duration="2 ms", samples=101)
+    late = replace(impact, further_spheres="0.6 9 0.002001")
+    both = il.simulate(late, grid, duration="2 ms", samples=101)
     for name, variable in alone.variables.items():
         assert np.array_equal(
             both[name].values, variable.values, equal_nan=variable.dtype == float
@@ -47,14 +57,16 @@ def test_a_sphere_that_comes_too_late_changes_no_bit():
     assert both.number_of_contacts_of_spheres.values[1] == 0
 
 
-def test_the_blows_move_a_free_beam():
+@BEAMS
+def test_the_blows_move_a_free_beam(model, scheme):
     """Its centre is where the forces moved it, of which one acts on an end."""
     impact = replace(held("free", "free", 0.25, il.paper_impact(5.0)), gravity=0.0)
+    impact, grid = replace(impact, beam_model=model), replace(GRID, scheme=scheme)
     blows = [
         {"strike_position": 1.0, "velocity": 2.0, "delay": "0.13 ms"},
         {"strike_position": 0.6, "velocity": 4.0},
     ]
-    run = il.simulate(replace(impact, further_spheres=blows), GRID, duration="1 ms", samples=4001)
+    run = il.simulate(replace(impact, further_spheres=blows), grid, duration="1 ms", samples=4001)
     moved = impact.beam.mass_per_length * run.deflection.integrate("x").item()
     forces = run.contact_force_of_spheres
     driven = (forces * (1e-3 - run.time)).integrate("time").values
@@ -63,17 +75,63 @@ def test_the_blows_move_a_free_beam():
     assert forces.integrate("time").values == pytest.approx(run.impulse_of_spheres.values, rel=1e-4)
 
 
-def test_energy_is_balanced_over_all_spheres():
+_RAYLEIGH = {"mass_damping": 600.0, "stiffness_damping": 1e-6, "foundation_stiffness": 1e8}
+
+
+@pytest.mark.parametrize(
+    ("changes", "scheme", "beam"),
+    [
+        ({}, "leapfrog", {}),
+        ({}, "leapfrog", _RAYLEIGH),
+        ({"beam_model": "timoshenko"}, "leapfrog", {}),
+        ({"beam_model": "timoshenko"}, "leapfrog", _RAYLEIGH),
+        ({"beam_model": "von_karman"}, "leapfrog", {}),
+        ({}, "modal", {}),
+        ({}, "modal", {"damping_ratio": 0.03, "foundation_stiffness": 1e8}),
+        ({"contact": "hunt_crossley"}, "leapfrog", {}),
+    ],
+)
+def test_energy_is_balanced_over_all_spheres(changes, scheme, beam):
     """To an error that falls with the time step: a term left out would stay."""
     hard = with_beam_material(
         il.paper_impact(15.0), isotropic_hardening_modulus=2e9, kinematic_hardening_modulus=2e9
     )
     impact = replace(held("clamped", "free", 0.25, hard), further_spheres="1 8 3.1e-4, 0.5 15 1e-4")
-    grids = [replace(GRID, courant=courant) for courant in (0.8, 0.2)]
+    impact = replace(impact, beam=replace(impact.beam, **beam), **changes)
+    grids = [replace(GRID, scheme=scheme, courant=courant) for courant in (0.8, 0.2)]
     runs = [il.simulate(impact, grid, duration="2 ms", samples=2) for grid in grids]
     errors = [run.energy_error.item() for run in runs]
     assert runs[0].plastic_dissipation.item() > 1.0
     assert 4.0 * errors[1] < errors[0] < 3e-3
+
+
+@pytest.mark.parametrize("compliance", ["beam", "strip"])
+def test_a_compliant_contact_is_that_at_its_own_place(compliance):
+    """The second sphere comes before waves of the first, and does as it does alone."""
+    impact = replace(il.corrected_impact(8.0), contact_prestress="ignored", load="point")
+    impact = replace(impact, contact_compliance=compliance, strike_position=0.15)
+    alone = replace(impact, strike_position=0.7)
+    both = replace(impact, velocity=0.1, further_spheres="0.7 8 2e-5")
+    grids = [il.Discretisation(nodes=101, courant=courant) for courant in (0.8, 0.2)]
+    single = il.simulate(alone, grids[0], duration="0.4 ms", samples=2)
+    runs = [il.simulate(both, grid, duration="0.42 ms", samples=2) for grid in grids]
+    for name in ("peak_force", "contact_duration", "impulse", "permanent_indentation"):
+        second = runs[0][f"{name}_of_spheres"].values[1]
+        assert second == pytest.approx(single[name].item(), rel=3e-3), name
+    errors = [run.energy_error.item() for run in runs]
+    assert 4.0 * errors[1] < errors[0] < 3e-3
+
+
+def test_the_modal_scheme_and_leapfrog_converge_to_each_other():
+    impact = held("clamped", "pinned", 0.25, il.paper_impact(2.0))
+    impact = replace(impact, beam_model="elastic", further_spheres="0.75 3 1e-4, 0.5 1 2.5e-4")
+    distances = []
+    for nodes in (21, 41, 81):
+        grids = [il.Discretisation(nodes=nodes, scheme=scheme) for scheme in ("modal", "leapfrog")]
+        runs = [il.simulate(impact, grid, duration="0.8 ms", samples=401) for grid in grids]
+        modal, leapfrog = (run.contact_force_of_spheres.values for run in runs)
+        distances.append(np.abs(modal - leapfrog).mean() / leapfrog.max())
+    assert distances[0] > 2.5 * distances[1] > 6.0 * distances[2]
 
 
 def test_spheres_exchange_their_roles():
@@ -87,12 +145,39 @@ def test_spheres_exchange_their_roles():
     assert runs[0].energy_error.item() == pytest.approx(runs[1].energy_error.item(), rel=1e-6)
 
 
-@pytest.mark.parametrize("model", ["elastic", "euler_bernoulli"])
-def test_blows_superpose(model):
+def waves(beam, model, number):
+    """Frequencies and shares of a force, of each half sine wave of a pinned beam.
+
+    Timoshenko's has two frequencies per wave: of w = W sin(kx), psi = P cos(kx).
+    """
+    k, mu = np.arange(1, number) * np.pi / beam.span, beam.mass_per_length
+    if model != "timoshenko":
+        return k, np.sqrt(beam.bending_stiffness / mu)[np.newaxis] * k[:, None] ** 2, 1.0 / mu
+    metal = beam.material
+    shear = 0.5 * metal.youngs_modulus / (1.0 + metal.poissons_ratio)
+    shear *= beam.shear_correction * beam.width * beam.depth
+    turn = np.sqrt(mu), np.sqrt(beam.section.rotary_inertia(metal.density))
+    matrices = np.empty((k.size, 2, 2))
+    matrices[:, 0, 0] = shear * k**2 / turn[0] ** 2
+    matrices[:, 1, 1] = (beam.bending_stiffness * k**2 + shear) / turn[1] ** 2
+    matrices[:, 0, 1] = matrices[:, 1, 0] = -shear * k / (turn[0] * turn[1])
+    squares, vectors = np.linalg.eigh(matrices)
+    return k, np.sqrt(squares), vectors[:, 0] ** 2 / mu
+
+
+@pytest.mark.parametrize(
+    ("model", "scheme"),
+    [
+        *((model, "leapfrog") for model in ("elastic", "timoshenko", "von_karman")),
+        ("euler_bernoulli", "modal"),
+        ("euler_bernoulli", "leapfrog"),
+    ],
+)
+def test_blows_superpose(model, scheme):
     """The modal series of an elastic beam under both forces; the second does as it does alone."""
     small = replace(PAPER, velocity=0.1, strike_position=0.1, beam_model=model)
     delay, duration, place = 0.0987e-3, 0.5e-3, 0.8
-    grid = il.Discretisation(nodes=101)
+    grid = il.Discretisation(nodes=101, scheme=scheme)
     blow = {"strike_position": place, "velocity": 0.5, "delay": delay}
     run = il.simulate(replace(small, further_spheres=[blow]), grid, duration=duration, samples=4001)
     alone = replace(small, strike_position=place, velocity=0.5)
@@ -100,27 +185,32 @@ def test_blows_superpose(model):
     for name in ("peak_force", "contact_duration", "impulse", "permanent_indentation"):
         second = run[f"{name}_of_spheres"].values[1]
         assert second == pytest.approx(single[name].item(), rel=3e-3), name
-    beam, t = small.beam, run.time.values
-    k = np.arange(1, 60)[:, None] * np.pi / beam.span
-    omega = k**2 * np.sqrt(beam.bending_stiffness / beam.mass_per_length)
+    t, span = run.time.values, small.beam.span
+    k, omega, shares = waves(small.beam, model, 60)
     q = 0.0
-    forces = run.contact_force_of_spheres.values
-    for x, force in zip((0.1, place), forces, strict=True):
-        pushes = np.sin(omega * (duration - t)) * force
-        q = q + np.sin(k[:, 0] * x * beam.span) * np.trapezoid(pushes, t, axis=1)
-    q = q / (0.5 * beam.mass_per_length * beam.span * omega[:, 0])
-    w = np.sin(k * run.x.values).T @ q
+    for x, force in zip((0.1, place), run.contact_force_of_spheres.values, strict=True):
+        pushes = np.sin(omega[..., None] * (duration - t)) * force
+        driven = np.trapezoid(pushes, t, axis=-1) * shares / omega
+        q = q + np.sin(k * x * span) * driven.sum(axis=1)
+    w = np.sin(k[:, None] * run.x.values).T @ q / (0.5 * span)
     assert run.deflection.values == pytest.approx(w, abs=2e-3 * np.abs(w).max())
 
 
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"beam_model": "timoshenko"}, r"^Impact\.beam_model = 'timoshenko': must be euler_ber"),
+        ({"beam_model": "rigid"}, r"^Impact\.beam_model = 'rigid': must be"),
+        (
+            {"beam_model": "timoshenko", "contact_prestress": "bending"},
+            r"^Impact\.contact_prestress = 'bending': must be ignored with further_",
+        ),
+        (
+            {"beam_model": "timoshenko", "contact_compliance": "beam"}
+            | {"further_spheres": "0.35 1 0"},
+            "needs further_spheres 1.5 depths and widths from each other",
+        ),
         ({"load": "contact_patch"}, r"^Impact\.load = 'contact_patch': must be point with further"),
         ({"strikes": 2}, r"^Impact\.strikes = 2: must be 1 with further_spheres: change it"),
-        ({"contact": "hunt_crossley"}, "^further_spheres: must be left out with a viscous contact"),
-        ({"scheme": "modal"}, "^further_spheres: must be left out with scheme: modal"),
         ({"further_spheres": "0.33 1 0"}, "^further_spheres: lies between two of the 41 nodes"),
         ({"further_spheres": "0.25 1 0"}, "must have a place of its own each: strikes and"),
         (

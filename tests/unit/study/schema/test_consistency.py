@@ -252,7 +252,6 @@ FURTHER = {"impact.strike_position": 0.25, "impact.further_spheres": "0.5 1 0"}
             "impact.further_spheres",
             "0.33 lies between",
         ),
-        (FURTHER | {"discretisation.scheme": "modal"}, "impact.further_spheres", "left out with"),
         (FURTHER | {"discretisation": "auto"}, "discretisation.auto", "needs one sphere"),
         (
             FURTHER | {"sampling.parameters": {"further_spheres": ["0.5 1 0"]}},
