@@ -45,7 +45,7 @@ _WHOLE_RUN = DIVERGED | ENERGY_OUT_OF_BALANCE
 class Table(NamedTuple):
     """K further spheres in each of R runs.
 
-    fastest: the cases, each with a sphere that asks for the smallest step, (R,). motions,
+    fastest: the cases, each with the spheres that come and one that asks for their step, (R,). motions,
     contacts, events: records to work in; answers: RESPONSE records, filled, all (R, K). samples:
     those of kernels.py, filled, (R, K, 5, S), of which the force is of use. modes: the table of
     model/beam_modes.py that all runs share, or empty.
@@ -87,10 +87,11 @@ def make_table(cases: Array, samples: int) -> Table:
     fastest, motions = cases.copy(), np.zeros(rows.shape[:2], MOTION)
     motions["velocity"], motions["delay"] = rows[..., 1], rows[..., 2]
     come = motions["delay"] <= cases["duration"][:, np.newaxis]
+    fastest["further"] = come.sum(axis=1)
     # one contact takes at most the energy of all spheres
     squares = cases["velocity"] ** 2 + np.sum(come * rows[..., 1] ** 2, axis=1)
     fastest["velocity"] = np.where(come.any(axis=1), np.sqrt(squares), cases["velocity"])
-    ends = np.isin(rows[..., 0], (0.0, 1.0)).any(axis=1)
+    ends = (come & np.isin(rows[..., 0], (0.0, 1.0))).any(axis=1)
     fastest["strike_position"][ends] = 0.0  # half the mass to push
     return Table(
         fastest,
