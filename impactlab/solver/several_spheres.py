@@ -45,9 +45,9 @@ _WHOLE_RUN = DIVERGED | ENERGY_OUT_OF_BALANCE
 class Table(NamedTuple):
     """K further spheres in each of R runs.
 
-    fastest: the cases, each with the spheres that come and one that asks for their step, (R,). motions,
-    contacts, events: records to work in; answers: RESPONSE records, filled, all (R, K). samples:
-    those of kernels.py, filled, (R, K, 5, S), of which the force is of use. modes: the table of
+    fastest: the cases, each with the spheres that come and one that asks for their step, (R,).
+    motions, contacts, events: records to work in; answers: RESPONSE records, filled, all (R, K).
+    samples: those of kernels.py, filled, (R, K, 5, S), of which the force is of use. modes: the table of
     model/beam_modes.py that all runs share, or empty.
     """
 
