@@ -47,8 +47,8 @@ class Table(NamedTuple):
 
     fastest: the cases, each with the spheres that come and one that asks for their step, (R,).
     motions, contacts, events: records to work in; answers: RESPONSE records, filled, all (R, K).
-    samples: those of kernels.py, filled, (R, K, 5, S), of which the force is of use. modes: the table of
-    model/beam_modes.py that all runs share, or empty.
+    samples: those of kernels.py, filled, (R, K, 5, S), of which the force is of use. modes:
+    the table of model/beam_modes.py that all runs share, or empty.
     """
 
     fastest: Array
