@@ -7,6 +7,8 @@ One impact
     paper_impact      the source paper's sphere and beam, at a velocity
     corrected_impact  the same in the beam model that is nearest to 3-D
     Impact            any other one, of Sphere, Beam and Material
+    ContactLaw, register
+                      a contact law of your own
     Discretisation    nodes, points and scheme in time
     simulate          solve it: an xarray.Dataset
     simulate_many     solve lists of parameters, in pairs or all combinations

@@ -1,6 +1,7 @@
 from . import plot as plot
 from .analysis.analyse import analyse as analyse
 from .analysis.surrogate import load_surrogate as load_surrogate
+from .api.contact_law import register as register
 from .api.definition import Study as Study
 from .api.experiment import calibrate as calibrate
 from .api.experiment import compare as compare
@@ -23,6 +24,7 @@ from .methods.regression import Regression as Regression
 from .methods.sobol import Sobol as Sobol
 from .model.bodies import Beam as Beam
 from .model.bodies import Sphere as Sphere
+from .model.contact_law import ContactLaw as ContactLaw
 from .model.discretisation import Discretisation as Discretisation
 from .model.impact import Impact as Impact
 from .model.impact import corrected_impact as corrected_impact

@@ -285,6 +285,7 @@ class Compiler:
             )(function)
             if called and not is_made and self.folder is not None and hasattr(dispatcher, "_cache"):
                 dispatcher._cache = KernelCache(self.folder, name)
+            dispatcher.decorate = compiled  # for copies of it (copies.py)
             return cast(Function, dispatcher)
 
         return compiled

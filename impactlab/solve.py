@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import pickle
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.section import fibre_table
 from impactlab.solver import BEAM_MODELS, BENDING_MODELS, SCHEMES, WAVE_MODELS
+from impactlab.solver.contact import NUMBERED, OUTSIDE
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.growth import by_strike
@@ -30,11 +32,17 @@ _COMPILE = """
 from dataclasses import replace
 import impactlab as il
 from impactlab.model.case_table import case_table
+from impactlab.model.contact_law import adopt
 from impactlab.solve import solve
 grid = il.Discretisation(nodes=5, scheme={scheme!r})
 impact = replace(il.paper_impact(), further_spheres={spheres!r})
 varied = {{"beam_model": [{model!r}], "contact": [{law!r}]}}
-solve(case_table(impact, grid, duration=1e-6, varied=varied))
+cases = case_table(impact, grid, duration=1e-6, varied=varied)
+if {outside!r}:
+    law = pickle.loads({outside!r})
+    adopt(law)
+    cases["contact"], cases["contact_prestress"] = law.number, {extended!r}
+solve(cases)
 """
 
 
@@ -70,16 +78,18 @@ def solve(
     arrays = (responses, contacts, events, histories, series, deflection)
     models, schemes = cases["beam_model"], cases["scheme"]
     further = [make_table(cases, samples)] if cases["further"].any() else []
-    kinds = np.stack([models, schemes, is_extended(cases), mode_keys(cases)])
+    # those from outside have kernels of their own
+    laws = np.where(cases["contact"] < OUTSIDE, 0, cases["contact"])
+    kinds = np.stack([models, schemes, is_extended(cases), laws, mode_keys(cases)])
     starts = np.flatnonzero(np.diff(kinds, prepend=-1).any(axis=0))
     for start, end in itertools.pairwise((*starts, runs)):
-        model, scheme, extended, _ = kinds[:, start]
+        model, scheme, extended, law, _ = kinds[:, start].tolist()
         stretches = model == VON_KARMAN
         fibres = np.full((2, end - start, nodes, points if stretches else points // 2), np.nan)
         kind = [BEAM_MODELS[model]], [SCHEMES[scheme]], [bool(extended)], [bool(further)]
-        compile_kernels(*kind)
+        compile_kernels(*kind, laws=[law])
         modes = mode_table(cases[start])
-        kernel_of(model, scheme, bool(extended), bool(further))(
+        kernel_of(model, scheme, bool(extended), bool(further), law)(
             cases[start:end],
             table[start:end],
             _rows(further[0], start, end, modes) if further else modes,
@@ -129,22 +139,26 @@ def compile_kernels(
     schemes: Iterable[str] = SCHEMES,
     extended: Iterable[bool] = (False, True),
     several: Iterable[bool] = (False, True),
+    laws: Iterable[int] = (0,),
 ) -> Path | None:
     """Compile the kernels of these models and schemes, unless they are compiled.
 
     extended: whether those with what kernels.is_extended names, those without, or both; several:
-    the same of further spheres. Returns the folder of the compiled kernels, None where they cannot
+    the same of further spheres. laws: numbers of those from
+    outside, 0: all others. Returns the folder of the compiled kernels, None where they cannot
     be kept.
     """
     programs = {}
-    for model, scheme, more, spheres in itertools.product(beam_models, schemes, extended, several):
-        kind: dict[str, Any] = {"model": model, "scheme": scheme}
-        kind["law"] = "hunt_crossley" if more else "hertz"
+    kinds = itertools.product(beam_models, schemes, extended, several, laws)
+    for model, scheme, more, spheres, law in kinds:
+        kind: dict[str, Any] = {"model": model, "scheme": scheme, "extended": more}
+        kind["law"] = "hunt_crossley" if more and not law else "hertz"
+        kind["outside"] = pickle.dumps(NUMBERED[law]) if law else b""
         kind["spheres"] = "0.25 1 0" if spheres else None
         models = BENDING_MODELS if scheme == "modal" else WAVE_MODELS if spheres else BEAM_MODELS
         if model in models:
             number = BEAM_MODELS.index(model), SCHEMES.index(scheme)
-            programs[kernel_of(*number, more, spheres)] = _COMPILE.format(**kind)
+            programs[kernel_of(*number, more, spheres, law)] = _COMPILE.format(**kind)
     precompile(programs)
     return FOLDER
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from impactlab import wings
+from impactlab.model.contact_law import outside
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver import outputs
 from impactlab.solver.contact import CONTACT_LAWS
@@ -320,6 +321,26 @@ def attributes(name: str) -> dict[str, Any]:
     return attrs
 
 
+OWN = "origin"
+"""Attribute of `contact` on laws from outside the package, with the hashes of their sources."""
+
+
+def law_texts(contact: xr.DataArray, name: str) -> dict[str, str]:
+    """Return what a dataset states of a law, by attribute; else what this process knows.
+
+    contact: the variable. Who reads a report need not have a law from outside.
+    """
+    keys = ("title", "source", "holds_for", "flaws", "unconfirmed", OWN)
+    if f"{name}: " not in contact.attrs.get(OWN, "") and name in CONTACT_LAWS:
+        return {key: getattr(CONTACT_LAWS[name], key, "") for key in keys}
+    texts = dict.fromkeys(keys, "")
+    for key in keys:
+        for line in contact.attrs.get(key, "").splitlines():
+            if line.startswith(f"{name}: "):
+                texts[key] = line.partition(": ")[2]
+    return texts
+
+
 def described(dataset: xr.Dataset) -> xr.Dataset:
     """Return the dataset with the table's attributes on every variable that the table knows.
 
@@ -331,8 +352,10 @@ def described(dataset: xr.Dataset) -> xr.Dataset:
             variable.attrs = attributes(str(name)) | variable.attrs
     if "contact" in dataset.variables:
         laws = [CONTACT_LAWS[name] for name in np.unique(dataset["contact"].values)]
-        for key in ("source", "holds_for", "flaws", "unconfirmed"):
-            lines = [f"{law.name}: {text}" for law in laws if (text := getattr(law, key))]
+        for key in ("title", "source", "holds_for", "flaws", "unconfirmed", OWN):
+            if key == "title" and not outside(law.name for law in laws):
+                continue
+            lines = [f"{law.name}: {text}" for law in laws if (text := getattr(law, key, ""))]
             dataset["contact"].attrs |= {key: "\n".join(lines)} if lines else {}
     return dataset
 

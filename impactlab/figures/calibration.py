@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from impactlab.analysis.measurements import COVERAGE
 from impactlab.analysis.posterior import SILENT
 from impactlab.figures import labels, measures, scales, style
-from impactlab.solver.contact import CONTACT_LAWS
+from impactlab.solver.contact import CONTACT_LAWS, LawRecord
 
 _BINS = 25
 _PRIOR = "0.75"
@@ -32,7 +32,10 @@ def calibration(results: xr.Dataset) -> Figure:
         order = np.argsort(results["model_weight"].values, kind="stable")
         rows = np.arange(order.size)
         axes[-1].barh(rows, results["model_weight"].values[order], color=style.COLOURS[0])
-        listed = [CONTACT_LAWS[name].short for name in results["model"].values[order]]
+        listed = [
+            CONTACT_LAWS.get(name, LawRecord(name=name, short=name)).short
+            for name in results["model"].values[order]
+        ]
         axes[-1].set_yticks(rows, listed)
         axes[-1].set(xlabel="weight (–)", xlim=(0.0, 1.0), ylabel="contact law")
     return style.finish(figure)

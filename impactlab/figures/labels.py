@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from impactlab import wings
 from impactlab.methods import METHODS
 from impactlab.methods.distributions import CHOICE
-from impactlab.solver.contact import CONTACT_LAWS
+from impactlab.solver.contact import CONTACT_LAWS, LawRecord
 from impactlab.types import Floats
 from impactlab.variables import of_function
 
@@ -165,7 +165,8 @@ def values(coordinate: xr.DataArray, where: Iterable[int], *, short: bool = Fals
 def _spelled(coordinate: xr.DataArray, word: str, *, short: bool = False) -> str:
     name = "" if of_function(coordinate) else coordinate.name
     if name == "contact":
-        return CONTACT_LAWS[word].short if short else CONTACT_LAWS[word].title
+        law = CONTACT_LAWS.get(word, LawRecord(name=word, short=word, title=word))
+        return law.short if short else law.title
     if name == "beam_model":
         return beam_model(word)
     return _RULES[word] if name == "rule" else word.replace("_", " ")

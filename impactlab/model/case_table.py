@@ -216,7 +216,7 @@ def _table(
     values = dict.fromkeys((*SECTION, "strike_interval"), 0.0) | values
     for name, entry in PARAMETERS.items():
         if entry.choices:
-            numbered = enumerate(entry.choices)
+            numbered = ((entry.choices.index(word), word) for word in entry.choices)
             values[name] = sum(number * (values[name] == word) for number, word in numbered)
     for side in ("left", "right"):  # a roller is a pinned end whose axis is not held
         support, axial = values[f"support_{side}"], map(SUPPORTS.index, AXIAL_SUPPORTS)

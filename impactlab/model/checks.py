@@ -7,7 +7,7 @@ written once. A refused column may still hold valid runs: then the runs are chec
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from difflib import get_close_matches
 from numbers import Integral, Real
 from typing import Any
@@ -76,10 +76,10 @@ def integer(owner: str, field: str, value: Any, least: int) -> int:
     return value.astype(np.int64) if isinstance(value, Column) else int(value)  # type: ignore[return-value]
 
 
-def one_of(owner: str, field: str, value: Any, choices: tuple[str, ...]) -> str:
+def one_of(owner: str, field: str, value: Any, choices: Sequence[str]) -> str:
     """Return `value` if it is among `choices`, or raise ValueError naming field and choices."""
     if isinstance(value, Column):
-        listed = set(value.tolist()) <= set(choices)
+        listed = all(word in choices for word in set(value.tolist()))
     else:  # other arrays have no truth
         listed = isinstance(value, str) and value in choices
     nearest = "" if listed else did_you_mean(value, choices)

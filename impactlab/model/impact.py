@@ -14,6 +14,7 @@ import numpy as np
 from impactlab import wings
 from impactlab.model.bodies import Beam, Sphere
 from impactlab.model.checks import among, instance, integer, number, one_of, positive, require
+from impactlab.model.contact_law import LAW_NAMES, ContactLaw, registered
 from impactlab.model.further_spheres import spheres_text
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI, Quantity, engineering
@@ -25,7 +26,6 @@ from impactlab.solver import (
     PRESTRESSES,
     WAVE_MODELS,
 )
-from impactlab.solver.contact import LAWS
 
 MODELS = (*BEAM_MODELS, *wings.models())
 """Names of all models of the beam."""
@@ -81,8 +81,8 @@ class Impact:
     velocity : Quantity
         Velocity of the sphere, downwards at first touch, in m/s.
     contact : str, default "finite_element"
-        Contact law (impactlab.solver.contact.LAWS); the default agrees best with 3-D finite
-        elements (docs/agreement.md).
+        Contact law (impactlab.solver.contact.LAWS), or a registered one (`il.register`) by its
+        name or as it is; the default agrees best with 3-D finite elements (docs/agreement.md).
     gravity : Quantity, default 9.81
         Acceleration of the sphere alone, in m/s2.
     beam_model : str, default "euler_bernoulli"
@@ -165,7 +165,9 @@ class Impact:
         positive("Impact", "velocity", self.velocity)
         gravity = number("Impact", "gravity", self.gravity)
         require(gravity >= 0, "Impact", "gravity", gravity, "must not be negative")
-        one_of("Impact", "contact", self.contact, LAWS)
+        if isinstance(self.contact, ContactLaw):
+            object.__setattr__(self, "contact", registered(self.contact))
+        one_of("Impact", "contact", self.contact, LAW_NAMES)
         one_of("Impact", "beam_model", self.beam_model, MODELS)
         one_of("Impact", "load", self.load, LOADS)
         one_of("Impact", "contact_compliance", self.contact_compliance, COMPLIANCES)
@@ -219,7 +221,7 @@ def paper_impact(velocity: Quantity = 0.99, contact: str = "stronge") -> Impact:
     velocity : Quantity, default 0.99
         Velocity of the sphere, in m/s.
     contact : str, default "stronge"
-        Contact law; the default is the paper's.
+        Contact law, by name or a registered one as it is; the default is the paper's.
 
     Returns
     -------

@@ -6,7 +6,7 @@ table alike, so that a parameter is spelled in one way everywhere.
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Any, NamedTuple
@@ -15,11 +15,11 @@ import numpy as np
 
 from impactlab import wings
 from impactlab.model.checks import Column, did_you_mean
+from impactlab.model.contact_law import LAW_NAMES
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import MODELS, Impact
 from impactlab.model.section import THICKNESSES
 from impactlab.solver import COMPLIANCES, LOADS, PRESTRESSES, RULES, SCHEMES, SHAPES, SUPPORTS
-from impactlab.solver.contact import LAWS
 
 Value = float | int | str
 
@@ -37,7 +37,7 @@ class Parameter:
     units: str
     long_name: str
     path: tuple[str, ...]
-    choices: tuple[str, ...] = ()
+    choices: Sequence[str] = ()
     is_integer: bool = False
     any_word: bool = False
 
@@ -125,7 +125,7 @@ _ROWS = (
     *((size.name, size.units, size.long_name, f"discretisation.{size.name}") for size in _SIZES),
 )
 _CHOICES = {
-    "contact": LAWS,
+    "contact": LAW_NAMES,
     "beam_model": MODELS,
     "load": LOADS,
     "contact_compliance": COMPLIANCES,

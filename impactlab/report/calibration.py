@@ -17,7 +17,7 @@ from impactlab.figures.calibration import calibration, measured_words
 from impactlab.figures.draw import draw
 from impactlab.report.listed import write_listed
 from impactlab.report.page import Cell, Entry, Row, Section, Table
-from impactlab.solver.contact import CONTACT_LAWS
+from impactlab.solver.contact import CONTACT_LAWS, LawRecord
 from impactlab.study import CALIBRATION
 
 _FIGURE = record.Figure(
@@ -230,7 +230,9 @@ def _value(marginal: xr.Dataset, key: str) -> str:
 def _model(law: xr.Dataset) -> str:
     """Return a law with its weight, and the parameters under it where it has some weight."""
     weight, doubt = float(law["model_weight"]), str(law["model_doubt"].item())
-    text = f"{CONTACT_LAWS[law['model'].item()].short} {labels.number(weight, 2)}"
+    name = law["model"].item()
+    record = CONTACT_LAWS.get(name, LawRecord(name=name, short=name))
+    text = f"{record.short} {labels.number(weight, 2)}"
     text += f", {labels.number(float(law['model_weight_before']), 2)} before"
     if doubt:
         return f"{text} (though {doubt})"

@@ -13,8 +13,8 @@ from impactlab.figures import access, labels
 from impactlab.figures.access import count, responses, usable
 from impactlab.methods.distributions import CHOICE
 from impactlab.report.distribution import regime_doubt
-from impactlab.solver.contact import CONTACT_LAWS, LAWS
-from impactlab.variables import MARKS, OUTSIDE_DATA, WARNINGS, of_function
+from impactlab.solver.contact import LAWS
+from impactlab.variables import MARKS, OUTSIDE_DATA, OWN, WARNINGS, law_texts, of_function
 
 _OF_THE_CONTACT = {"peak_force", "maximum_indentation", "permanent_indentation"}
 _ENERGY_LIMIT = 1e-3
@@ -27,9 +27,10 @@ def cautions(runs: xr.Dataset) -> Iterator[str]:
         beyond = (runs["status"] & MARKS["outside_contact_law"][0]) != 0
         for law in np.unique(runs["contact"].values).tolist():
             if number := int((beyond & (runs["contact"] == law)).sum()):
+                holds_for = law_texts(runs["contact"], law)["holds_for"]
                 yield (
                     f"{number} of {count(runs)} runs went beyond the range of the contact law "
-                    f"“{law}”, which holds for {CONTACT_LAWS[law].holds_for}. Their responses are "
+                    f"“{law}”, which holds for {holds_for}. Their responses are "
                     "kept, but they are extrapolated."
                 )
     for name in access.varied(runs):
@@ -97,17 +98,19 @@ def notes(runs: xr.Dataset) -> Iterator[str]:
             "Rebound velocity, restitution, impulse and permanent indentation refer to the last "
             "contact within the simulated time and do not include a later contact."
         )
-    for law in LAWS:
-        about = CONTACT_LAWS[law]
-        if law in used["contact"] and (about.flaws or about.unconfirmed):
+    for law in sorted(used["contact"], key=lambda law: (law not in LAWS, [*LAWS, law].index(law))):
+        about = law_texts(runs["contact"], law)
+        if about["flaws"] or about["unconfirmed"] or about[OWN]:
             source = (
                 "This comes from the law, not from the solver; the energy balance accounts for it."
             )
             parts = [
-                f"Some runs use the contact law “{law}” ({about.title}).",
-                about.flaws,
-                source * ("energy" in about.flaws),
-                f"The following is not confirmed: {about.unconfirmed}." * bool(about.unconfirmed),
+                f"Some runs use the contact law “{law}” ({about['title'] or law}).",
+                f"The law is {about[OWN]}." * bool(about[OWN]),
+                about["flaws"],
+                source * ("energy" in about["flaws"]),
+                f"The following is not confirmed: {about['unconfirmed']}."
+                * bool(about["unconfirmed"]),
             ]
             yield " ".join(filter(None, parts))
     if "peak_plastic_strain" in runs:

@@ -6,10 +6,12 @@ Each is compiled by itself, so that a study compiles only what it needs.
 from __future__ import annotations
 
 from collections.abc import Callable
+from threading import Lock
 from typing import Any
 
 import numpy as np
 
+from impactlab.copies import Copies
 from impactlab.solver import (
     BEAM_MODELS,
     RESISTANCES,
@@ -25,8 +27,9 @@ from impactlab.solver import (
     von_karman,
 )
 from impactlab.solver.beam import BeamGrid, half_node, make_beam, rest_beam
+from impactlab.solver.contact import NUMBERED
 from impactlab.solver.contact.history import Pair, make_pair
-from impactlab.solver.contact.switch import DAMPED
+from impactlab.solver.contact.switch import DAMPED, substitutes
 from impactlab.solver.fibre_plasticity import (
     keep_ends_elastic,
     make_plastic_state,
@@ -322,18 +325,50 @@ def is_extended(cases: Array) -> Array:
         extended |= cases[name] > 0.0
     for law in DAMPED:
         extended |= cases["contact"] == law
+    for number, law in NUMBERED.items():
+        if law.damping is not None:
+            extended |= cases["contact"] == number
     return extended
 
 
 def kernel_of(
-    beam_model: int, scheme: int, extended: bool = False, several: bool = False
+    beam_model: int, scheme: int, extended: bool = False, several: bool = False, law: int = 0
 ) -> Callable[..., None]:
     """Return the kernel for a beam model and a scheme, both as numbers.
 
-    extended: see _kernel. several: whether of further spheres.
+    extended: see _kernel. several: whether of further spheres. law: number of one from outside the
+    package, which has kernels of its own; 0: all others.
     """
     if scheme == MODAL:
-        return _SEVERAL_MODAL if several else _MODAL[extended]
-    if several:
-        return _SEVERAL[BEAM_MODELS[beam_model]]
-    return (_EXTENDED if extended else _LEAPFROG)[BEAM_MODELS[beam_model]]
+        kernel = _SEVERAL_MODAL if several else _MODAL[extended]
+    elif several:
+        kernel = _SEVERAL[BEAM_MODELS[beam_model]]
+    else:
+        kernel = (_EXTENDED if extended else _LEAPFROG)[BEAM_MODELS[beam_model]]
+    return _with_law(kernel, law) if law else kernel
+
+
+_COPIES: dict[int, Copies] = {}
+_COPYING = Lock()  # threads of one process share the copies
+
+
+def _with_law(kernel: Callable[..., None], number: int) -> Callable[..., None]:
+    """Return the copy of a kernel, and of all that it calls, for a law from outside.
+
+    Its functions are named by the hash of the law's source: so are the files in which compiled code
+    is kept, and linkers cannot mix them with those of another source.
+    """
+    law = NUMBERED[number]
+
+    def finish(original: Any, copy: Any) -> Any:
+        copy.__qualname__ = f"{copy.__qualname__.replace('<locals>.', '')}_{law.source_hash}"
+        return getattr(original, "decorate", compiled)(copy)
+
+    with _COPYING:
+        if number not in _COPIES:
+            copies = Copies(finish)
+            for function, substitute in substitutes(law).items():
+                copies.put(function, copies.of(substitute))
+            _COPIES[number] = copies
+        copied: Callable[..., None] = _COPIES[number].of(kernel)
+    return copied

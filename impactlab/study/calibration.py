@@ -19,8 +19,8 @@ from impactlab.methods.distributions import Choice
 from impactlab.methods.hypercube import Hypercube
 from impactlab.methods.runs import in_order, listed, usable
 from impactlab.methods.sampling import RandomSample
+from impactlab.model.contact_law import LAW_NAMES
 from impactlab.provenance import provenance
-from impactlab.solver.contact import LAWS
 from impactlab.study import CALIBRATION, steps
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
@@ -112,8 +112,8 @@ def _models(
         return
     impacts = of_impacts(study)
     for law in laws:
-        if law not in LAWS:
-            raise ValueError(f"contact = {law!r}: {unknown('contact law', law, LAWS)}")
+        if law not in LAW_NAMES:
+            raise ValueError(f"contact = {law!r}: {unknown('contact law', law, LAW_NAMES)}")
         if not choice and law == impacts.sampling.fixed.get("contact", impacts.impact.contact):
             yield law, study, folder
             continue

@@ -18,6 +18,7 @@ import xarray as xr
 from distributed import Client, Future, KilledWorker, as_completed
 from distributed.comm.core import CommClosedError
 
+from impactlab.model.contact_law import adopt
 from impactlab.study.engine import Engine
 from impactlab.study.inventory import Work, open_answers
 from impactlab.study.progress import items_done
@@ -84,13 +85,21 @@ _GONE = f"the dask scheduler is gone. {_KEPT}"
 
 
 def solve_batch(
-    solver: str, cases: Array, output: OutputSpec, version: str, functions: Any = None
+    solver: str,
+    cases: Array,
+    output: OutputSpec,
+    version: str,
+    functions: Any = None,
+    laws: Any = (),
 ) -> Result:
     """Return the answers and the seconds that they took: the task that dask runs.
 
-    functions: of the solver, for a worker that may not know them. Raises RuntimeError where the
+    functions: of the solver, for a worker that may not know them. laws: from outside the
+    package, likewise. Raises RuntimeError where the
     solver has another version than the caller's.
     """
+    for law in laws:
+        adopt(law)
     if functions is not None:
         from impactlab.study.solvers.own import TASKS
 
@@ -162,7 +171,15 @@ class WorkerPool:
             if not runs.size:
                 break
             cases = solver.cases(work.design, runs)
-            task = solve_batch, name, cases, work.output, solver.version, solver.functions
+            task = (
+                solve_batch,
+                name,
+                cases,
+                work.output,
+                solver.version,
+                solver.functions,
+                work.laws,
+            )
             future = self.client.submit(*task, pure=False)
             self.under_way[future.key] = runs
             futures.append(future)

@@ -19,6 +19,7 @@ import xarray as xr
 from dask.delayed import delayed
 
 from impactlab.files import block_rows, unfinished_files
+from impactlab.model.contact_law import outside
 from impactlab.study.shard import DAMAGE, KEYS, Array, Shard
 from impactlab.study.solvers import SOLVERS, Solver, run_shape, solver_named
 from impactlab.study.store import (
@@ -52,6 +53,13 @@ class Work:
     keys: Array
     cost: Array
     values: int
+
+    @property
+    def laws(self) -> list[Any]:
+        """Contact laws from outside the package, which workers may not know."""
+        if "contact" not in self.design.variables:
+            return []
+        return outside(np.unique(self.design["contact"].values))
 
     @staticmethod
     def of(design: xr.Dataset) -> Work:

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 
 @dataclass(frozen=True, kw_only=True)
-class ContactLaw:
+class LawRecord:
     """A contact law: its name, where it comes from, how far it holds, and how sure we are.
 
     short: the name as figures write it. title: in words. source: whom it follows, and where its
@@ -29,10 +30,10 @@ class ContactLaw:
     """
 
     name: str
-    short: str
-    title: str
-    source: str
-    holds_for: str
+    short: str = ""
+    title: str = ""
+    source: str = ""
+    holds_for: str = ""
     unconfirmed: str = ""
     flaws: str = ""
     yield_pressure: float = 1.295 * math.exp(0.736 * 0.3)
@@ -50,14 +51,14 @@ _CIRCLE = (
 _READ = "read in public code written after the paper, not in the paper itself"
 
 _REGISTRY = (
-    ContactLaw(
+    LawRecord(
         name="hertz",
         short="Hertz",
         title="Hertz",
         source="Hertz 1881; Johnson, Contact Mechanics (1985), eq. 4.23",
         holds_for=f"elastic bodies, {_CIRCLE} (indentation up to the sphere's radius)",
     ),
-    ContactLaw(
+    LawRecord(
         name="stronge",
         short="Stronge",
         title="Stronge, unloading after Wang et al.",
@@ -77,7 +78,7 @@ _REGISTRY = (
         creates=(1.0, 2.673),
         dent=-0.04057,
     ),
-    ContactLaw(
+    LawRecord(
         name="stronge_original",
         short="Stronge, original",
         title="Stronge",
@@ -97,7 +98,7 @@ _REGISTRY = (
         restitution=1.0123,
         creates=(1.0, 1.2526),
     ),
-    ContactLaw(
+    LawRecord(
         name="jackson_green",
         short="Jackson-Green",
         title="Jackson and Green",
@@ -113,7 +114,7 @@ _REGISTRY = (
         flaws="The force jumps up by 0.47 % at 1.9 times the indentation of first yield.",
         jumps=((1.9, 0.00474),),
     ),
-    ContactLaw(
+    LawRecord(
         name="mjg",
         short="MJG",
         title="Modified Jackson and Green",
@@ -134,7 +135,7 @@ _REGISTRY = (
         flaws="The force jumps up by 0.47 % at 1.9 times the indentation of first yield.",
         jumps=((1.9, 0.00470),),
     ),
-    ContactLaw(
+    LawRecord(
         name="thornton",
         short="Thornton",
         title="Thornton",
@@ -147,7 +148,7 @@ _REGISTRY = (
         ),
         yield_pressure=1.6,
     ),
-    ContactLaw(
+    LawRecord(
         name="kogut_etsion",
         short="Kogut-Etsion",
         title="Kogut and Etsion, unloading after Etsion, Kligerman and Kadin",
@@ -173,7 +174,7 @@ _REGISTRY = (
         restitution=1.01489,
         creates=(1.0, 1.2483),
     ),
-    ContactLaw(
+    LawRecord(
         name="brake",
         short="Brake",
         title="Brake's unloading on the modified Jackson and Green loading",
@@ -194,7 +195,7 @@ _REGISTRY = (
         creates=(1.9, 2.0011),
         dent=-0.0047,
     ),
-    ContactLaw(
+    LawRecord(
         name="abbott_firestone",
         short="Abbott-Firestone",
         title="Abbott and Firestone, after Hertz",
@@ -211,7 +212,7 @@ _REGISTRY = (
         flaws="Stiff, and elastic too long: nothing yields before full plasticity.",
         yield_pressure=3.0 * 2.8,
     ),
-    ContactLaw(
+    LawRecord(
         name="stronge_consistent",
         short="Stronge, consistent",
         title="Stronge, loading capped by Hertz",
@@ -226,7 +227,7 @@ _REGISTRY = (
         ),
         yield_pressure=1.65,
     ),
-    ContactLaw(
+    LawRecord(
         name="finite_element",
         short="finite elements",
         title="Fit to finite elements",
@@ -241,7 +242,7 @@ _REGISTRY = (
         ),
         yield_pressure=1.65,
     ),
-    ContactLaw(
+    LawRecord(
         name="hunt_crossley",
         short="Hunt-Crossley",
         title="Hunt and Crossley",
@@ -253,7 +254,11 @@ _REGISTRY = (
         ),
     ),
 )
-CONTACT_LAWS: dict[str, ContactLaw] = {law.name: law for law in _REGISTRY}
-"""The laws by name."""
+CONTACT_LAWS: dict[str, LawRecord] = {law.name: law for law in _REGISTRY}
+"""The laws by name; those that the user registers (model/contact_law.py) are added."""
 LAWS = tuple(CONTACT_LAWS)
-"""Their names; the index is the kernels' switch."""
+"""The names of those of this package; the index is the kernels' switch."""
+OUTSIDE = 2**52
+"""Least number of a law from outside the package; it follows from the hash of its source."""
+NUMBERED: dict[int, Any] = {}
+"""Laws from outside by their numbers, those of an earlier source included."""

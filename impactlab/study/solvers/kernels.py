@@ -10,6 +10,7 @@ import xarray as xr
 
 from impactlab.methods.runs import listed
 from impactlab.model.case_table import case_table
+from impactlab.model.contact_law import LAW_NAMES, outside
 from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
@@ -26,6 +27,7 @@ from impactlab.variables import (
     BY_SPHERE,
     HISTORIES,
     OF_STRIKES,
+    OWN,
     PROFILES,
     RESPONSES,
     answer_variables,
@@ -59,10 +61,27 @@ def kept(output: OutputSpec) -> tuple[str, ...]:
 
 def cases(design: xr.Dataset, runs: Array) -> Array:
     """Return the kernels' case table of these runs. Raises ValueError naming one it refuses."""
+    check_laws(design)
     varied = {name: flattened(design, name, runs) for name in listed(design, "varied")}
     duration = design["duration"].item()
     first = run_number(design, runs[0])
     return case_table(*base(design), duration=duration, varied=varied, first_run=first)
+
+
+def check_laws(design: xr.Dataset) -> None:
+    """Raise ValueError where this process lacks a law from outside, or has it of another source."""
+    lines = design["contact"].attrs.get(OWN, "") if "contact" in design.variables else ""
+    for name, _, origin in (line.partition(": ") for line in lines.splitlines()):
+        stated = f"contact law {name!r} of this design is {origin}, but this session"
+        advice = "call il.register with it, or install the package that has it as an entry point"
+        if name not in LAW_NAMES:
+            raise ValueError(f"{stated} does not know it: {advice}")
+        (law,) = outside([name])
+        if not origin.endswith(law.source_hash):
+            raise ValueError(
+                f"{stated} has another one, source hash {law.source_hash}: {advice}, or draw the "
+                "design again"
+            )
 
 
 def values(cases: Array, output: OutputSpec) -> int:
@@ -122,9 +141,14 @@ def prepare(design: xr.Dataset) -> None:
     strip = np.atleast_1d(design.get("contact_compliance", impact.contact_compliance)) == "strip"
     stress = np.atleast_1d(design.get("contact_prestress", impact.contact_prestress)) == "bending"
     laws = np.atleast_1d(design.get("contact", impact.contact))
-    damped = np.isin(laws, [LAWS[number] for number in DAMPED])
+    own = outside(laws.ravel())
+    dampers = [LAWS[number] for number in DAMPED] + [law.name for law in own if law.damping]
+    damped = np.isin(laws, dampers)
     options = np.meshgrid(patch, rate > 0.0, sensitivity > 0.0, strip, stress, damped)
-    compile_kernels(models, schemes, np.unique(np.logical_or.reduce(options)).tolist())
+    extended = np.unique(np.logical_or.reduce(options)).tolist()
+    numbers = [law.number for law in own] + [0] * bool(np.isin(laws, LAWS).any())
+    several = [True] if "further_spheres" in design.variables else [False]
+    compile_kernels(models, schemes, extended, several, numbers)
 
 
 SOLVER = Solver(

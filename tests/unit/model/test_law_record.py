@@ -2,8 +2,8 @@
 
 import pytest
 
-from impactlab.solver.contact import CONTACT_LAWS, LAWS, ContactLaw
-from impactlab.verification import law_record
+from impactlab.model import law_record
+from impactlab.solver.contact import CONTACT_LAWS, LAWS, LawRecord
 
 # as test_laws.py, which measures against joints that are known
 TOLERANCES = {"yield_pressure": 1e-9, "unloading_start": 1e-6, "jumps": 2e-3, "creates": 5e-3}
@@ -13,7 +13,7 @@ TOLERANCES = {"yield_pressure": 1e-9, "unloading_start": 1e-6, "jumps": 2e-3, "c
 def test_the_lines_are_those_of_the_record(name):
     record, fields = CONTACT_LAWS[name], {"name": name, "short": "", "title": "", "source": ""}
     printed = eval(f"dict({''.join(law_record.lines(name))})")
-    law = ContactLaw(**fields, holds_for="", **printed)
+    law = LawRecord(**fields, holds_for="", **printed)
     for number in law_record.NUMBERS:
         expected, tolerance = getattr(record, number), TOLERANCES.get(number, 2e-4)
         if number == "jumps":
