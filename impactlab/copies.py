@@ -2,7 +2,8 @@
 
 Compiled code is joined by the names of functions, so code of one name and two sources must never
 meet in a process. A copy has names of its own, and calls copies alone, wherever the functions find
-them: in globals, in modules and in scopes around them. Those of Python, NumPy, SciPy and numba stay. Constants have the values that they had when the copy was made.
+them: in globals, in modules and in scopes around them. Those of Python, NumPy, SciPy and numba
+stay. Constants have the values that they had when the copy was made.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-_LIBRARIES = {*sys.stdlib_module_names, "numpy", "numba", "scipy", "llvmlite"}
+_LIBRARIES = {*sys.stdlib_module_names, "numpy", "numba", "scipy", "llvmlite"} - {"builtins"}
 _PLAIN = (bool, int, float, complex, str, bytes, type(None), type(Ellipsis), np.generic)
 
 
@@ -139,7 +140,7 @@ def _tokens(  # noqa: C901
         case ModuleType() if not _is_of_library(value.__name__):
             yield from _tokens(dict(sorted(_public(value).items())), name, seen)
         case FunctionType() | ModuleType() | BuiltinFunctionType() | type() | np.ufunc():
-            module = getattr(value, "__module__", None) or getattr(value, "__name__", "")
+            module = str(getattr(value, "__module__", None) or getattr(value, "__name__", ""))
             version = getattr(sys.modules.get(module.partition(".")[0]), "__version__", "")
             yield f"{module} {version} {getattr(value, '__qualname__', value.__name__)}"
         case _:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from impactlab.model.checks import instance
 from impactlab.model.contact_law import ContactLaw, adopt
-from impactlab.model.law_record import impossible, lines, refusals
+from impactlab.verification.law_record import impossible, lines, refusals
 
 
 def register(law: ContactLaw) -> ContactLaw:

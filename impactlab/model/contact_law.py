@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
+from pkgutil import resolve_name
 from types import FunctionType
 from typing import Any
 
@@ -229,8 +230,6 @@ def known(name: object) -> bool:
     """
     if not isinstance(name, str) or name in CONTACT_LAWS or name not in _entry_points():
         return isinstance(name, str) and name in CONTACT_LAWS
-    from impactlab.model.law_record import refusals  # which measures by these
-
     entry = _entry_points()[name]
     package = f"{entry.dist.name} {entry.dist.version}" if entry.dist else "another package"
     stated = f"contact law {name!r} of the entry point {entry.value} ({package})"
@@ -240,7 +239,7 @@ def known(name: object) -> bool:
         raise ValueError(f"{stated}: cannot be loaded: {error}") from error
     if not isinstance(law, ContactLaw) or law.name != name:
         raise ValueError(f"{stated}: is no il.ContactLaw of this name")
-    if reasons := refusals(law):
+    if reasons := resolve_name("impactlab.verification.law_record:refusals")(law):
         raise ValueError(f"{stated}: {'; '.join(reasons)}")
     object.__setattr__(law, "provenance", f"{package}, entry point {entry.value}")
     adopt(law)

@@ -3,6 +3,7 @@
 import pickle
 import subprocess
 import sys
+from pathlib import Path
 from textwrap import dedent
 
 import numpy as np
@@ -71,7 +72,7 @@ def test_answers_are_those_of_the_built_in_law_and_of_the_present_source(capsys)
     softer = il.register(own(strong(0.5), hertzian_start=False))
     assert softer.number != law.number
     assert answers(softer)[0] < 0.95 * answers("hertz")[0]
-    with pytest.raises(ValueError, match="is not registered: call il.register"):
+    with pytest.raises(ValueError, match="is not registered"):
         il.paper_impact(1.0, law)
 
 
@@ -162,7 +163,7 @@ def test_registration_refuses_what_the_record_does_not_state(law, message):
 
 
 def test_the_printed_numbers_make_the_record_whole(capsys):
-    with pytest.raises(ValueError, match="or state in il.ContactLaw"):
+    with pytest.raises(ValueError, match="with the numbers printed above"):
         il.register(own(creating))
     lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("    ")]
     stated = eval(f"dict({''.join(lines)})")
@@ -237,3 +238,13 @@ print(il.paper_impact(1.0, "bouncy").contact, CONTACT_LAWS["bouncy"].provenance)
 """
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert done.stdout.strip() == "bouncy bouncy 1.2, entry point bouncy:law", done.stderr
+
+
+@pytest.mark.slow
+def test_the_how_to_runs():
+    text = (Path(__file__).parents[2] / "docs" / "howto.md").read_text(encoding="utf-8")
+    _, _, after = text.partition("## A contact law of your own")
+    names = {"il": il}
+    exec(after.partition("```python")[2].partition("```")[0], names)
+    assert 0.0 < names["run"].restitution.item() < 1.0
+    assert names["law"].source_hash in names["run"].contact.attrs["origin"]

@@ -2,8 +2,8 @@
 
 import pytest
 
-from impactlab.model import law_record
 from impactlab.solver.contact import CONTACT_LAWS, LAWS, LawRecord
+from impactlab.verification import law_record
 
 # as test_laws.py, which measures against joints that are known
 TOLERANCES = {"yield_pressure": 1e-9, "unloading_start": 1e-6, "jumps": 2e-3, "creates": 5e-3}

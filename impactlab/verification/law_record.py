@@ -1,6 +1,6 @@
 """The numbers to which tests hold a contact law's record, measured from the law's functions.
 
-    python -m impactlab.model.law_record NAME
+    python -m impactlab.verification.law_record NAME
 
 prints them as lines of the record of law NAME in solver/contact/__init__.py. A new law has to be
 listed there first, if only with its texts. All is for steel: E* = 115 GPa, S_y = 345 MPa, nu = 0.3.
