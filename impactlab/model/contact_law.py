@@ -154,7 +154,7 @@ def _hertz_limit(E: float, R: float, S_y: float, nu: float) -> float:
 
 
 def _hertz_radius(delta: float, E: float, R: float, S_y: float, nu: float) -> float:
-    return (R * delta) ** 0.5
+    return float((R * delta) ** 0.5)
 
 
 _DEFAULTS: dict[str, Callable[..., Any]] = {"limit": _hertz_limit, "radius": _hertz_radius}
@@ -263,7 +263,7 @@ class LawNames(Sequence[str]):
             return tuple(CONTACT_LAWS)[number]
         return NUMBERED[int(number)].name if number >= OUTSIDE else LAWS[number]
 
-    def index(self, name: str, *_: int) -> int:  # type: ignore[override]
+    def index(self, name: str, *_: int) -> int:
         """Return the number of a law."""
         return LAWS.index(name) if name in LAWS else int(CONTACT_LAWS[name].number)  # type: ignore[attr-defined]
 
