@@ -92,15 +92,15 @@ def count(runs: xr.Dataset) -> int:
 
 def usable(runs: xr.Dataset, name: str) -> xr.DataArray:
     """Return a variable of the runs, NaN where the run's status says that it does not hold."""
-    array = runs[name]
     if "status" not in runs:
-        return array
-    # variables have no coordinates, which arithmetic would compare, some forty of them
-    holds = (runs["status"].variable & status_bits([name])) == 0
-    usable: xr.DataArray = array.copy(
-        deep=False, data=array.variable.where(holds).transpose(*array.dims).data
-    )
-    return usable
+        return runs[name]
+    values, status = runs[name], runs.variables["status"]
+    sound = values.variable.where((status & status_bits([name])) == 0)
+    if sound.dims != values.dims:
+        values = values.broadcast_like(runs["status"]).transpose(*sound.dims)
+    # with the coordinates as they are: to merge a hundred of them takes most of a report's time
+    masked: xr.DataArray = values.copy(deep=False, data=sound.data)
+    return masked
 
 
 def bare(array: xr.DataArray) -> xr.DataArray:
