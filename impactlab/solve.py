@@ -59,10 +59,11 @@ def solve(
     samples: length of each history (0: none). profiles: keep the fields along the beam, for which
     all cases must share nodes and points; raises ValueError where they do not. strikes: the
     largest number that a case has, or more, to keep what solver.outputs.SERIES has of each (0:
-    none). by_sphere: keep the answers of further spheres. Returns by name, of R runs: the fields of solver.outputs.RESPONSE, (R,); histories,
-    (R, samples); profiles, (R, nodes, points), or (R, nodes) for the deflection; series,
-    (R, strikes), NaN beyond those of the case, and variables.OF_STRIKES; of several spheres,
-    variables.BY_SPHERE, (R, spheres) or (R, spheres, samples).
+    none). by_sphere: keep the answers of further spheres. Returns by name, of R runs: the fields of
+    solver.outputs.RESPONSE, (R,); histories, (R, samples); profiles, (R, nodes, points), or
+    (R, nodes) for the deflection; series, (R, strikes), NaN beyond those of the case, and
+    variables.OF_STRIKES; of several spheres, variables.BY_SPHERE, (R, spheres) or
+    (R, spheres, samples).
     """
     if profiles and any(np.unique(cases[name]).size > 1 for name in ("nodes", "points", "rule")):
         raise ValueError("profiles need the same nodes, points and rule in every run")

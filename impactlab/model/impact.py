@@ -165,8 +165,9 @@ class Impact:
         positive("Impact", "velocity", self.velocity)
         gravity = number("Impact", "gravity", self.gravity)
         require(gravity >= 0, "Impact", "gravity", gravity, "must not be negative")
-        if isinstance(self.contact, ContactLaw):
-            object.__setattr__(self, "contact", registered(self.contact))
+        law: Any = self.contact
+        if isinstance(law, ContactLaw):
+            object.__setattr__(self, "contact", registered(law))
         one_of("Impact", "contact", self.contact, LAW_NAMES)
         one_of("Impact", "beam_model", self.beam_model, MODELS)
         one_of("Impact", "load", self.load, LOADS)

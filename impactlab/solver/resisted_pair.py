@@ -1,6 +1,6 @@
 """Rayleigh's damping and Winkler's foundation of a beam with two displacements.
 
-That is the deflection at nodes and, half-way between them, Timoshenko's rotation
+These are the deflection at nodes and, half-way between them, Timoshenko's rotation
 (resisted_shear.py) or the axial displacement of a beam that stretches (resisted_stretch.py). Steps
 and the work of damping are as in resistance.py: the mass's damping is central, the stiffness's lags
 by half a step.

@@ -5,7 +5,7 @@ deflection solves the linear equations
 
     (EI w_xx - M_0)_xx - N w_xx + k w = 0
 
-of the grid, springs of ends included. The sections are together as long as the deflected axis,
+of the grid, springs of ends included. All sections together are as long as the axis,
 
     g(N) = integral of (N - N_0)/EA - w_x^2/2 over the span = 0.
 
