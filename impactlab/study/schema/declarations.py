@@ -74,9 +74,8 @@ def _section(*path: str, **fields: Any) -> type[FileSection]:
                 continue
             optional = not deeper and _DEFAULTS[name] is None
             kind = _section(*path, key) if deeper else value_type(entry)
-            about = (
-                "" if deeper else f"{entry.long_name}, {symbol(entry.units)}".removesuffix(", 1")
-            )
+            about = f"{entry.long_name}, {symbol(entry.units)}".removesuffix(", ")
+            about = "" if deeper else about
             keys[key] = (_or_null(kind) if optional else kind, Field(None, description=about))
     return create_model("_".join(path), __base__=FileSection, **(keys | fields))
 
