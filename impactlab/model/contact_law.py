@@ -264,7 +264,7 @@ class LawNames(Sequence[str]):
         return NUMBERED[int(number)].name if number >= OUTSIDE else LAWS[number]
 
     def index(self, name: str, *_: int) -> int:
-        """Return the number of a law."""
+        """Return the number of the law."""
         return LAWS.index(name) if name in LAWS else int(CONTACT_LAWS[name].number)  # type: ignore[attr-defined]
 
 

@@ -1,4 +1,4 @@
-"""What repeated strikes leave, and the strikes from which on it does not grow.
+"""Dents and deflections left by repeated strikes, and the strikes from which on they do not grow.
 
 A quantity y does not grow from strike m on if |y_n - y_(n-1)| <= NO_GROWTH |y_n|, but for
 round-off, for all n from m to the last one. Plain numpy: compiled kernels fill in the series.

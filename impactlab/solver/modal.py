@@ -368,7 +368,7 @@ def _land(state: State, w: float) -> None:
 
 @compiled
 def _push(state: State, now: int, nodes: Array, forces: Array) -> float:
-    """As state.py has it; with forces of 0, too, this sets deflection and step of the nodes."""
+    """Add forces (state.py); with forces of 0, too, set deflection and step of the nodes."""
     modes, w, u, mid = state.extra, state.beam.w, state.beam.u, state.grid.mid
     moved, work, pushed = 0.0, 0.0, False
     for k in range(nodes.size):

@@ -59,19 +59,16 @@ from impactlab.solver.resisted_pair import (
 )
 from impactlab.solver.resisted_stretch import drag_stretch
 from impactlab.solver.section import (
-    FAR,
     FibreSection,
     cut_whole_section,
-    elastic_range,
-    flow_at_rate,
     make_whole_room,
-    return_mapping,
 )
 from impactlab.solver.settle import ROUNDS, rest_nodes
 from impactlab.solver.settle_stretch import static_axis, static_stretch
 from impactlab.solver.state import BeamModel, State
 from impactlab.solver.strain_rate import RateLaw
-from impactlab.solver.types import ONE, Array, Index, Record
+from impactlab.solver.stretched_fibres import strain_fibres
+from impactlab.solver.types import ONE, Array, Record
 
 _SMALL = 1e-9
 """Of the yield strain: sections that rest changes by less have not yielded."""
@@ -256,44 +253,6 @@ def _look_at_fibres(
             stretch.N_0[i], plastic.M_0[i] = N_0, M_0
             memory[i, 0], memory[i, 1], memory[i, 2] = e[i], kappa[i], room
             plastic.flowed[i, 1] += work
-
-
-@compiled
-def strain_fibres(
-    section: FibreSection,
-    rate: RateLaw | None,
-    e: float,
-    kappa: float,
-    before: tuple[float, float],
-    dt: float,
-    plastic_strain: Array,
-    peeq: Array,
-    i: Index,
-) -> tuple[float, float, float, float]:
-    """Take the fibres of section i to the strain e of the axis and the curvature kappa (1/m).
-
-    Updates row i of plastic_strain and peeq, shape (sections, P). before: e and kappa at the
-    last look, where fibres flow by the rate a time dt (s) ago. Returns (N_0 in N, M_0 in N m, the
-    strain that no fibre yields by, work of the overstress in J/m).
-    """
-    z, (E, S_y, H_i, H_k) = section.z, section.moduli
-    N_0, M_0, room, work = 0.0, 0.0, FAR, 0.0
-    for j in range(z.size):
-        strain, slipped, now = plastic_strain[i, j], peeq[i, j], e - z[j] * kappa
-        if rate is not None and rate.D > 0.0:
-            trial, growth = E * now - (E + H_k) * strain, E * (now - before[0] + z[j] * before[1])
-            strain, slipped, lost = flow_at_rate(
-                section.moduli, rate, trial, growth, strain, slipped, dt
-            )
-            work += lost * section.area[j]
-        else:
-            strain, slipped = return_mapping(now, strain, slipped, E, S_y, H_i, H_k)
-        plastic_strain[i, j], peeq[i, j] = strain, slipped
-        N_0 -= E * section.area[j] * strain
-        M_0 -= section.lever[j] * strain
-        least, largest = elastic_range(strain, slipped, E, S_y, H_i, H_k)
-        room = min(room, largest - now, now - least)
-    return N_0, M_0, room, work
 
 
 @vectorised

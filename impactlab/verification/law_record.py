@@ -185,7 +185,7 @@ def _restitution(name: str | ContactLaw, deltas: Floats) -> tuple[Floats, Floats
 
 
 def lines(name: str | ContactLaw) -> list[str]:
-    """Return the numbers of a law that differ from a record's defaults, as its lines.
+    """Return the numbers of the law that differ from a record's defaults, as its lines.
 
     Raises ValueError for a name that is not listed.
     """

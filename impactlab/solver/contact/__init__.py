@@ -259,6 +259,6 @@ CONTACT_LAWS: dict[str, LawRecord] = {law.name: law for law in _REGISTRY}
 LAWS = tuple(CONTACT_LAWS)
 """The names of those of this package; the index is the kernels' switch."""
 OUTSIDE = 2**52
-"""Least number of a law from outside the package; it follows from the hash of its source."""
+"""Least number of laws from outside the package; theirs follow from the hashes of their sources."""
 NUMBERED: dict[int, Any] = {}
 """Laws from outside by their numbers, those of an earlier source included."""

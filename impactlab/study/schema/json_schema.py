@@ -86,7 +86,7 @@ def _sampling(entries: str) -> Schema:
 
 
 def _grid_entry(parameter: Parameter) -> Schema:
-    """Return the schema of the values of a parameter in a grid: a list, or a range of numbers."""
+    """Return the schema of what a parameter has in a grid: a list, or a range of numbers."""
     value = _value(parameter)
     listed = {"type": "array", "items": value, "minItems": 1}
     if parameter.choices:

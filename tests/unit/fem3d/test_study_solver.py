@@ -123,7 +123,7 @@ def test_springs_and_foundation_reach_the_3d_model():
     ],
 )
 def test_what_the_3d_model_leaves_out_is_refused(values, words):
-    """Of an impact of other models of the beam, too, of which `impactlab witness` is asked."""
+    """Impacts of other models of the beam, which `impactlab witness` is given, are refused, too."""
     impact = il.paper_impact()
     if "damping" in next(iter(values)):
         values = {"beam": replace(impact.beam, **values)}

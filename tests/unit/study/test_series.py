@@ -167,7 +167,7 @@ def test_series_count_on_disk_and_in_memory(strikes):
 
 
 def test_growth_ends_where_a_geometric_series_says():
-    """Of 1 - q^n, which grows by q^(n - 1) (1 - q)."""
+    """The series 1 - q^n grows by q^(n - 1) (1 - q)."""
     numbers, strikes = np.arange(1, 61), np.array([60, 60, 20, 1])
     shares = np.array([0.5, 0.8, 0.8, 0.5])[:, np.newaxis]
     values = np.where(numbers <= strikes[:, np.newaxis], 1.0 - shares**numbers, np.nan)
