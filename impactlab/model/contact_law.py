@@ -134,12 +134,24 @@ class ContactLaw(LawRecord):
 
     @property
     def number(self) -> int:
-        """Number of the law in case tables, by the hash of its source."""
+        """Number of the law in case tables.
+
+        Returns
+        -------
+        int
+            Number that follows from the hash of the law's source.
+        """
         return OUTSIDE + int(self.source_hash[:13], 16)
 
     @property
     def origin(self) -> str:
-        """Sentence part that says whose law this is."""
+        """Origin of the law, in words.
+
+        Returns
+        -------
+        str
+            Part of a sentence, with the hash of the law's source.
+        """
         return f"not of impactlab: from {self.provenance}, source hash {self.source_hash}"
 
     def __reduce__(self) -> Any:
