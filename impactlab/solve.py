@@ -139,15 +139,14 @@ def compile_kernels(
     beam_models: Iterable[str] = BEAM_MODELS,
     schemes: Iterable[str] = SCHEMES,
     extended: Iterable[bool] = (False, True),
-    several: Iterable[bool] = (False, True),
+    several: Iterable[bool] = (False,),
     laws: Iterable[int] = (0,),
 ) -> Path | None:
     """Compile the kernels of these models and schemes, unless they are compiled.
 
     extended: whether those with what kernels.is_extended names, those without, or both; several:
-    the same of further spheres. laws: numbers of those from
-    outside, 0: all others. Returns the folder of the compiled kernels, None where they cannot
-    be kept.
+    the same of further spheres. laws: numbers of those from outside, 0: all others. Returns the
+    folder of the compiled kernels, None where they cannot be kept.
     """
     programs = {}
     kinds = itertools.product(beam_models, schemes, extended, several, laws)

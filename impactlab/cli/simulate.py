@@ -205,7 +205,7 @@ def _checked(base: str, values: dict[str, Value]) -> tuple[Impact, Discretisatio
 def compile_kernels(
     further: Annotated[
         bool,
-        typer.Option("--wings", help="Compile those of the 3-D model, too."),
+        typer.Option("--wings", help="Compile those of several spheres and of the 3-D model, too."),
     ] = False,
 ) -> None:
     """Compile the kernels of the beam models into their cache.
@@ -216,6 +216,7 @@ def compile_kernels(
     from impactlab.solve import compile_kernels
 
     models = wings.models().values() if further else ()
-    for compiles in (compile_kernels, *(model.part("compile") for model in models)):
-        folder = compiles()
+    folders = [compile_kernels(several=(False, True) if further else (False,))]
+    folders += [model.part("compile")() for model in models]
+    for folder in folders:
         print(f"Compiled kernels: {folder}" if folder else "Compiled kernels cannot be kept.")

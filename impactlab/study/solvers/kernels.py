@@ -17,6 +17,7 @@ from impactlab.model.impact import Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, SECTION, with_values
 from impactlab.provenance import provenance
 from impactlab.solve import compile_kernels, profile_coordinates, solve
+from impactlab.solver import RESISTANCES
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.switch import DAMPED
 from impactlab.solver.jit import SOURCES_HASH
@@ -144,7 +145,10 @@ def prepare(design: xr.Dataset) -> None:
     own = outside(laws.ravel())
     dampers = [LAWS[number] for number in DAMPED] + [law.name for law in own if law.damping]
     damped = np.isin(laws, dampers)
-    options = np.meshgrid(patch, rate > 0.0, sensitivity > 0.0, strip, stress, damped)
+    resisted = [
+        np.atleast_1d(design.get(name, getattr(impact.beam, name))) > 0.0 for name in RESISTANCES
+    ]
+    options = np.meshgrid(patch, rate > 0.0, sensitivity > 0.0, strip, stress, damped, *resisted)
     extended = np.unique(np.logical_or.reduce(options)).tolist()
     numbers = [law.number for law in own] + [0] * bool(np.isin(laws, LAWS).any())
     several = [True] if "further_spheres" in design.variables else [False]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impactlab.solve import compile_kernels
-from impactlab.solver import BEAM_MODELS, SCHEMES
+from impactlab.solver import BEAM_MODELS, SCHEMES, WAVE_MODELS
 from impactlab.solver.contact import LAWS
 from impactlab.solver.kernels import is_extended, kernel_of
 from impactlab.study.solvers import kernels
@@ -18,6 +18,8 @@ OPTIONS = [
     {"beam_rate_sensitivity": 0.01},
     {"contact_compliance": "strip"},
     {"contact_prestress": "bending"},
+    {"mass_damping": 10.0},
+    {"foundation_stiffness": 1e6},
 ]
 
 
@@ -28,13 +30,14 @@ def test_a_study_compiles_the_kernels_of_its_runs(option, small_design, monkeypa
     monkeypatch.setattr(kernels, "compile_kernels", lambda *kinds: compiled.append(kinds))
     kernels.prepare(design)
     needed = is_extended(kernels.cases(design, np.array([0, 1]))).tolist()
-    assert compiled == [(["timoshenko"], ["leapfrog"], sorted(set(needed)))]
+    assert compiled == [(["timoshenko"], ["leapfrog"], sorted(set(needed)), [False], [0])]
 
 
 def test_compiling_all_leaves_no_kernel_out(monkeypatch):
     programs = {}
     monkeypatch.setitem(compile_kernels.__globals__, "precompile", programs.update)
-    compile_kernels()
+    compile_kernels(several=(False, True))
     kinds = itertools.product(range(len(BEAM_MODELS)), range(len(SCHEMES)), (False, True))
-    several = kernel_of(0, 0, several=True)
-    assert set(programs) == {*map(kernel_of, *zip(*kinds, strict=True)), several}
+    of_spheres = itertools.product(map(BEAM_MODELS.index, WAVE_MODELS), range(len(SCHEMES)))
+    several = {kernel_of(*kind, several=True) for kind in of_spheres}
+    assert set(programs) == {*map(kernel_of, *zip(*kinds, strict=True))} | several
