@@ -266,7 +266,9 @@ def simulate_many(
     lists = {name: _in_si(name, values) for name, values in varied.items()}
     dims, shape, columns = _combined(lists, combine)
     cases = case_table(impact, grid, duration=seconds, varied=columns)
-    if (cases["strikes"] == 1).all() and (interval := cases["strike_interval"].max()) > 0.0:
+    if (cases["strikes"] == 1).all() and (
+        interval := cases["strike_interval"].max(initial=0.0)
+    ) > 0.0:
         raise ValueError(f"strike_interval = {engineering(interval, 's')}: {NO_INTERVAL}")
     ends = {name: (min(values), max(values)) for name, values in lists.items() if len(values)}
     _warn(numbers(impact, grid) | ends)

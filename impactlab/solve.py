@@ -29,6 +29,7 @@ from impactlab.solver.types import VON_KARMAN
 from impactlab.variables import BY_SPHERE, HISTORIES
 
 _COMPILE = """
+import pickle
 from dataclasses import replace
 import impactlab as il
 from impactlab.model.case_table import case_table

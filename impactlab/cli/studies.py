@@ -71,7 +71,7 @@ def studies(
 
 
 def schema() -> None:
-    """Print the JSON Schema of study files, with which editors complete and check them."""
+    """Print the JSON Schema of study files, for editors."""
     print(_schema())
 
 

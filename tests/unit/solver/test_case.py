@@ -45,7 +45,7 @@ def test_a_record_has_every_value_in_its_place(make_case):
     moduli = {"sphere_youngs_modulus": 1e9, "beam_youngs_modulus": 2e9, "beam_span": 9.0}
     moduli |= {"beam_rate_exponent": 4.0, "beam_rate_sensitivity": 0.0}
     values = numbers | ratios | moduli | {"nodes": 19, "points": 3, "strike_position": 5 / 18}
-    values |= {"strikes": 1}
+    values |= {"strikes": 2, "strike_interval": 0.8}
     case = make_case(duration=0.7, **values, **names)
     numbers_of_names = {
         "contact": LAWS.index("hertz"),
