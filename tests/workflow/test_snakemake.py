@@ -18,7 +18,7 @@ from impactlab.verification.finding import Comparisons, Finding, Outcome
 from impactlab.verification.outcomes import packed
 
 ROOT = Path(__file__).parents[2]
-FEW = "peak_force, contact_duration"
+FEW = "peak_force, contact_duration, energy_error"
 
 
 def snakemake(folder, *args, studies="smoke,checks", config=()):

@@ -1,7 +1,5 @@
 """Each panel as a file of its own, for papers."""
 
-from itertools import cycle
-
 import matplotlib
 import pytest
 from command_line import called
@@ -27,9 +25,8 @@ def _draw(study, folder, width, look="plain"):
     return draw_all(*study, folder, write)
 
 
-@pytest.mark.parametrize(
-    ("look", "width"), [*zip(style.SHEETS, cycle([style.SINGLE, style.DOUBLE]), strict=False)]
-)
+@pytest.mark.parametrize("look", style.SHEETS)
+@pytest.mark.parametrize("width", [style.SINGLE, style.DOUBLE])
 def test_every_panel_is_a_file_of_the_width_asked_for(study, tmp_path, width, look):
     before = dict(matplotlib.rcParams)
     written = _draw(study, tmp_path, width, look)
@@ -44,8 +41,6 @@ def test_every_panel_is_a_file_of_the_width_asked_for(study, tmp_path, width, lo
 
 
 def test_the_same_panels_have_the_same_bytes_and_styles_differ(study, tmp_path):
-    runs, analysis = study
-    study = runs[["contact_duration", "status"]], analysis
     files = [
         {path.name: path.read_bytes() for path in _draw(study, tmp_path / folder, 85.0, look)}
         for folder, look in (("a", "plain"), ("b", "plain"), ("c", "nature"), ("d", "science"))

@@ -9,7 +9,7 @@ pytestmark = pytest.mark.chaos
 
 @pytest.mark.parametrize(
     ("engine", "workers", "seconds"),
-    [((), 3, 1), (("--processes",), 3, 0.01)],
+    [((), 2, 0.01), ((), 3, 1), (("--processes",), 1, 0.3), (("--processes",), 3, 0.01)],
 )
 def test_here(folder, engine, workers, seconds, undisturbed):
     options = ("--workers", workers, "--batch-seconds", seconds)
@@ -17,9 +17,10 @@ def test_here(folder, engine, workers, seconds, undisturbed):
     assert_same_bits(runs, undisturbed)
 
 
-def test_on_a_cluster_of_three(folder, undisturbed):
+@pytest.mark.parametrize("seconds", [0.01, 1])
+def test_on_a_cluster_of_three(folder, seconds, undisturbed):
     with Cluster(folder) as cluster:
         cluster.add(3)
-        options = ("--scheduler", cluster.address, "--batch-seconds", 0.3)
+        options = ("--scheduler", cluster.address, "--batch-seconds", seconds)
         runs, _ = resumed(folder, *options)
     assert_same_bits(runs, undisturbed)
