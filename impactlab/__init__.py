@@ -7,7 +7,7 @@ One impact
     paper_impact      the source paper's sphere and beam, at a velocity
     corrected_impact  the same in the beam model that is nearest to 3-D
     Impact            any other one, of Sphere, Beam and Material
-    ContactLaw, register
+    ContactLaw, FlowLaw, register
                       a contact law of your own
     Discretisation    nodes, points and scheme in time
     simulate          solve it: an xarray.Dataset

@@ -1,11 +1,11 @@
 from . import plot as plot
 from .analysis.analyse import analyse as analyse
 from .analysis.surrogate import load_surrogate as load_surrogate
-from .api.contact_law import register as register
 from .api.definition import Study as Study
 from .api.experiment import calibrate as calibrate
 from .api.experiment import compare as compare
 from .api.experiment import compare_studies as compare_studies
+from .api.laws import register as register
 from .methods.delta import Delta as Delta
 from .methods.distributions import Choice as Choice
 from .methods.distributions import Lognormal as Lognormal
@@ -26,6 +26,7 @@ from .model.bodies import Beam as Beam
 from .model.bodies import Sphere as Sphere
 from .model.contact_law import ContactLaw as ContactLaw
 from .model.discretisation import Discretisation as Discretisation
+from .model.flow_law import FlowLaw as FlowLaw
 from .model.impact import Impact as Impact
 from .model.impact import corrected_impact as corrected_impact
 from .model.impact import paper_impact as paper_impact

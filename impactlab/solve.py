@@ -15,8 +15,15 @@ from impactlab.model.beam_modes import mode_keys, mode_table
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.section import fibre_table
-from impactlab.solver import BEAM_MODELS, BENDING_MODELS, SCHEMES, WAVE_MODELS
-from impactlab.solver.contact import NUMBERED, OUTSIDE
+from impactlab.solver import (
+    BEAM_MODELS,
+    BENDING_MODELS,
+    FLOW_LAWS_OUTSIDE,
+    OUTSIDE,
+    SCHEMES,
+    WAVE_MODELS,
+)
+from impactlab.solver.contact import NUMBERED
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.growth import by_strike
@@ -33,18 +40,21 @@ import pickle
 from dataclasses import replace
 import impactlab as il
 from impactlab.model.case_table import case_table
-from impactlab.model.contact_law import adopt
+from impactlab.model.own_law import adopt
 from impactlab.solve import solve
 grid = il.Discretisation(nodes=5, scheme={scheme!r})
 impact = replace(il.paper_impact(), further_spheres={spheres!r})
 varied = {{"beam_model": [{model!r}], "contact": [{law!r}]}}
 cases = case_table(impact, grid, duration=1e-6, varied=varied)
-if {outside!r}:
-    law = pickle.loads({outside!r})
+for name, packed in {outside!r}.items():
+    law = pickle.loads(packed)
     adopt(law)
-    cases["contact"], cases["contact_prestress"] = law.number, {extended!r}
+    cases[name], cases["contact_prestress"] = law.number, {extended!r}
 solve(cases)
 """
+
+_OWN = {"contact": NUMBERED, "beam_flow_law": FLOW_LAWS_OUTSIDE}
+"""Laws from outside by their numbers, by the field of the case."""
 
 
 def solve(
@@ -81,17 +91,17 @@ def solve(
     models, schemes = cases["beam_model"], cases["scheme"]
     further = [make_table(cases, samples)] if cases["further"].any() else []
     # those from outside have kernels of their own
-    laws = np.where(cases["contact"] < OUTSIDE, 0, cases["contact"])
-    kinds = np.stack([models, schemes, is_extended(cases), laws, mode_keys(cases)])
+    laws = [np.where(cases[name] < OUTSIDE, 0, cases[name]) for name in _OWN]
+    kinds = np.stack([models, schemes, is_extended(cases), mode_keys(cases), *laws])
     starts = np.flatnonzero(np.diff(kinds, prepend=-1).any(axis=0))
     for start, end in itertools.pairwise((*starts, runs)):
-        model, scheme, extended, law, _ = kinds[:, start].tolist()
+        model, scheme, extended, _, *own = kinds[:, start].tolist()
         stretches = model == VON_KARMAN
         fibres = np.full((2, end - start, nodes, points if stretches else points // 2), np.nan)
         kind = [BEAM_MODELS[model]], [SCHEMES[scheme]], [bool(extended)], [bool(further)]
-        compile_kernels(*kind, laws=[law])
+        compile_kernels(*kind, laws=[tuple(own)])
         modes = mode_table(cases[start])
-        kernel_of(model, scheme, bool(extended), bool(further), law)(
+        kernel_of(model, scheme, bool(extended), bool(further), *own)(
             cases[start:end],
             table[start:end],
             _rows(further[0], start, end, modes) if further else modes,
@@ -141,25 +151,26 @@ def compile_kernels(
     schemes: Iterable[str] = SCHEMES,
     extended: Iterable[bool] = (False, True),
     several: Iterable[bool] = (False,),
-    laws: Iterable[int] = (0,),
+    laws: Iterable[tuple[int, int]] = ((0, 0),),
 ) -> Path | None:
     """Compile the kernels of these models and schemes, unless they are compiled.
 
     extended: whether those with what kernels.is_extended names, those without, or both; several:
-    the same of further spheres. laws: numbers of those from outside, 0: all others. Returns the
-    folder of the compiled kernels, None where they cannot be kept.
+    the same of further spheres. laws: numbers of contact and flow laws from outside, 0: all
+    others. Returns the folder of the compiled kernels, None where they cannot be kept.
     """
     programs = {}
     kinds = itertools.product(beam_models, schemes, extended, several, laws)
-    for model, scheme, more, spheres, law in kinds:
+    for model, scheme, more, spheres, own in kinds:
         kind: dict[str, Any] = {"model": model, "scheme": scheme, "extended": more}
-        kind["law"] = "hunt_crossley" if more and not law else "hertz"
-        kind["outside"] = pickle.dumps(NUMBERED[law]) if law else b""
+        kind["law"] = "hunt_crossley" if more and not any(own) else "hertz"
+        named = zip(_OWN.items(), own, strict=True)
+        kind["outside"] = {name: pickle.dumps(table[law]) for (name, table), law in named if law}
         kind["spheres"] = "0.25 1 0" if spheres else None
         models = BENDING_MODELS if scheme == "modal" else WAVE_MODELS if spheres else BEAM_MODELS
         if model in models:
             number = BEAM_MODELS.index(model), SCHEMES.index(scheme)
-            programs[kernel_of(*number, more, spheres, law)] = _COMPILE.format(**kind)
+            programs[kernel_of(*number, more, spheres, *own)] = _COMPILE.format(**kind)
     precompile(programs)
     return FOLDER
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from impactlab import wings
-from impactlab.model.contact_law import outside
+from impactlab.model.contact_law import LAW_NAMES
+from impactlab.model.flow_law import FLOW_LAW_NAMES
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver import outputs
 from impactlab.solver.contact import CONTACT_LAWS
@@ -322,7 +323,7 @@ def attributes(name: str) -> dict[str, Any]:
 
 
 OWN = "origin"
-"""Attribute of `contact` on laws from outside the package, with the hashes of their sources."""
+"""Attribute of `contact` and `beam_flow_law` on laws from outside the package: source hashes."""
 
 
 def law_texts(contact: xr.DataArray, name: str) -> dict[str, str]:
@@ -353,11 +354,20 @@ def described(dataset: xr.Dataset) -> xr.Dataset:
     if "contact" in dataset.variables:
         laws = [CONTACT_LAWS[name] for name in np.unique(dataset["contact"].values)]
         for key in ("title", "source", "holds_for", "flaws", "unconfirmed", OWN):
-            if key == "title" and not outside(law.name for law in laws):
+            if key == "title" and not LAW_NAMES.outside([law.name for law in laws]):
                 continue
-            lines = [f"{law.name}: {text}" for law in laws if (text := getattr(law, key, ""))]
-            dataset["contact"].attrs |= {key: "\n".join(lines)} if lines else {}
+            dataset["contact"].attrs |= _lines(key, laws)
+    if "beam_flow_law" in dataset.variables:
+        own = FLOW_LAW_NAMES.outside(dataset["beam_flow_law"].values)
+        for key in ("title", "source", "holds_for", OWN):
+            dataset["beam_flow_law"].attrs |= _lines(key, own)
     return dataset
+
+
+def _lines(key: str, laws: Iterable[Any]) -> dict[str, str]:
+    """Return an attribute with a line for each law that has this text; {} if none has."""
+    lines = [f"{law.name}: {text}" for law in laws if (text := getattr(law, key, ""))]
+    return {key: "\n".join(lines)} if lines else {}
 
 
 def status_bits(responses: Iterable[str]) -> int:

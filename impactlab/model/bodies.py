@@ -49,6 +49,8 @@ class Sphere:
     def __post_init__(self) -> None:
         instance("Sphere", "material", self.material, Material)
         positive("Sphere", "radius", self.radius)
+        law = self.material.flow_law
+        require(law == "linear", "Material", "flow_law", law, 'must be "linear" of a sphere')
         if self.mass is not None:
             positive("Sphere", "mass", self.mass)
 

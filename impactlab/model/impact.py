@@ -14,7 +14,7 @@ import numpy as np
 from impactlab import wings
 from impactlab.model.bodies import Beam, Sphere
 from impactlab.model.checks import among, instance, integer, number, one_of, positive, require
-from impactlab.model.contact_law import LAW_NAMES, ContactLaw, registered
+from impactlab.model.contact_law import LAW_NAMES, ContactLaw
 from impactlab.model.further_spheres import spheres_text
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI, Quantity, engineering
@@ -22,6 +22,7 @@ from impactlab.solver import (
     BEAM_MODELS,
     COMPLIANCES,
     DAMPINGS,
+    FLOW_LAWS,
     LOADS,
     PRESTRESSES,
     WAVE_MODELS,
@@ -160,6 +161,9 @@ class Impact:
         object.__setattr__(self, "strikes", strikes)
         alone = np.equal(strikes, 1) | among(self.beam_model, BEAM_MODELS)
         require(alone, "Impact", "strikes", strikes, f"must be 1 with {OTHER_MODEL}")
+        linear = among(self.beam.material.flow_law, FLOW_LAWS)
+        message = "must be 1 with a flow_law of one's own, with which the beam is not put to rest"
+        require(np.equal(strikes, 1) | linear, "Impact", "strikes", strikes, message)
         if self.strike_interval is not None:
             positive("Impact", "strike_interval", self.strike_interval)
         positive("Impact", "velocity", self.velocity)
@@ -167,7 +171,7 @@ class Impact:
         require(gravity >= 0, "Impact", "gravity", gravity, "must not be negative")
         law: Any = self.contact
         if isinstance(law, ContactLaw):
-            object.__setattr__(self, "contact", registered(law))
+            object.__setattr__(self, "contact", LAW_NAMES.registered(law))
         one_of("Impact", "contact", self.contact, LAW_NAMES)
         one_of("Impact", "beam_model", self.beam_model, MODELS)
         one_of("Impact", "load", self.load, LOADS)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
-from impactlab.model.checks import number, positive, require
+from impactlab.model.checks import among, number, one_of, positive, require
+from impactlab.model.flow_law import FLOW_LAW_NAMES, FlowLaw
 from impactlab.model.quantities import SI, engineering
+from impactlab.solver import FLOW_LAWS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +40,9 @@ class Material:
         Coefficient C of Johnson and Cook; 0 for a yield stress without their law.
     reference_rate : Quantity, default 1
         Strain rate of Johnson and Cook up to which the yield stress is the static one, in 1/s.
+    flow_law : str or FlowLaw, default "linear"
+        Hardening of the beam's fibres: "linear", by the moduli, or a registered law, which takes
+        the place of the isotropic modulus and of the laws of the strain rate.
 
     Raises
     ------
@@ -73,6 +79,7 @@ class Material:
     rate_exponent: SI[float] = SI("1", 5.0)
     rate_sensitivity: SI[float] = SI("1", 0.0)
     reference_rate: SI[float] = SI("s-1", 1.0)
+    flow_law: str = "linear"
 
     def __post_init__(self) -> None:
         for field in ("density", "youngs_modulus", "yield_stress"):
@@ -88,6 +95,15 @@ class Material:
         single = (self.rate_coefficient == 0) | (self.rate_sensitivity == 0)
         message = "is Johnson and Cook's, beside Cowper and Symonds' rate_coefficient: set one to 0"
         require(single, "Material", "rate_sensitivity", self.rate_sensitivity, message)
+        law: Any = self.flow_law
+        if isinstance(law, FlowLaw):
+            object.__setattr__(self, "flow_law", FLOW_LAW_NAMES.registered(law))
+        one_of("Material", "flow_law", self.flow_law, FLOW_LAW_NAMES)
+        linear = among(self.flow_law, FLOW_LAWS)
+        for field in ("isotropic_hardening_modulus", "rate_coefficient", "rate_sensitivity"):
+            value = getattr(self, field)
+            message = "must be 0 with a flow_law, which states hardening and rate"
+            require(linear | (value == 0.0), "Material", field, value, message)
         exponent = number("Material", "rate_exponent", self.rate_exponent)
         message = "must be at least 1"
         require(exponent >= 1, "Material", "rate_exponent", self.rate_exponent, message)

@@ -17,6 +17,7 @@ from impactlab import wings
 from impactlab.model.checks import Column, did_you_mean
 from impactlab.model.contact_law import LAW_NAMES
 from impactlab.model.discretisation import Discretisation
+from impactlab.model.flow_law import FLOW_LAW_NAMES
 from impactlab.model.impact import MODELS, Impact
 from impactlab.model.section import THICKNESSES
 from impactlab.solver import COMPLIANCES, LOADS, PRESTRESSES, RULES, SCHEMES, SHAPES, SUPPORTS
@@ -54,6 +55,7 @@ _MATERIAL = (
     ("rate_exponent", "1", "Cowper-Symonds exponent"),
     ("rate_sensitivity", "1", "Johnson-Cook rate coefficient"),
     ("reference_rate", "s-1", "Johnson-Cook reference strain rate"),
+    ("flow_law", "1", "flow law"),
 )
 _SPRINGS = (
     ("", "N m-1", "stiffness"),
@@ -124,8 +126,10 @@ _ROWS = (
     ("courant", "1", "time step over the scheme's largest", "discretisation.courant"),
     *((size.name, size.units, size.long_name, f"discretisation.{size.name}") for size in _SIZES),
 )
+LAW_PARAMETERS = {"contact": LAW_NAMES, "beam_flow_law": FLOW_LAW_NAMES}
+"""Parameters whose words are names of laws, to which users may add their own."""
 _CHOICES = {
-    "contact": LAW_NAMES,
+    **LAW_PARAMETERS,
     "beam_model": MODELS,
     "load": LOADS,
     "contact_compliance": COMPLIANCES,

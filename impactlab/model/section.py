@@ -19,11 +19,11 @@ from typing import Any
 
 import numpy as np
 
-from impactlab.model.checks import one_of, positive, require
+from impactlab.model.checks import among, one_of, positive, require
 from impactlab.model.cross_section import Section
 from impactlab.model.laminate import LEAST_FIBRES, Laminate, layer_rows
 from impactlab.model.shapes import Box, Circle, ISection, Profile, Rectangle, Tube, profile_points
-from impactlab.solver import RULES
+from impactlab.solver import FLOW_LAWS, RULES
 from impactlab.solver import SHAPES as SHAPE_NAMES
 from impactlab.solver.types import LAYERS, PROFILE
 from impactlab.types import Floats
@@ -156,6 +156,8 @@ def _layers_text(beam: Any, needed: bool) -> str | None:
         value = getattr(beam.material, field)
         message = "must be 0 with shape: laminate, whose layers do not harden"
         require(value == 0.0, "Material", field, value, message)
+    law, message = beam.material.flow_law, 'must be "linear" with shape: laminate'
+    require(among(law, FLOW_LAWS), "Material", "flow_law", law, message)
     for field in ("rate_coefficient", "rate_sensitivity"):
         value = getattr(beam.material, field)
         message = "must be 0 with shape: laminate, whose layers do not depend on the strain rate"

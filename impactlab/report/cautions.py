@@ -13,6 +13,7 @@ from impactlab.figures import access, labels
 from impactlab.figures.access import count, responses, usable
 from impactlab.methods.distributions import CHOICE
 from impactlab.report.distribution import regime_doubt
+from impactlab.solver import FLOW_LAWS
 from impactlab.solver.contact import LAWS
 from impactlab.variables import MARKS, OUTSIDE_DATA, OWN, WARNINGS, law_texts, of_function
 
@@ -85,7 +86,7 @@ def notes(runs: xr.Dataset) -> Iterator[str]:
         return
     used = {
         name: set(runs[name].values.flat) if name in runs.coords else set()
-        for name in ("contact", "scheme", "points", "rule")
+        for name in ("contact", "beam_flow_law", "scheme", "points", "rule")
     }
     if "contact_duration" in runs:
         yield (
@@ -113,6 +114,9 @@ def notes(runs: xr.Dataset) -> Iterator[str]:
                 * bool(about["unconfirmed"]),
             ]
             yield " ".join(filter(None, parts))
+    for law in sorted(used["beam_flow_law"].difference(FLOW_LAWS)):
+        origin = law_texts(runs["beam_flow_law"], law)[OWN]
+        yield f"Some runs use the flow law “{law}” for the beam's fibres. The law is {origin}."
     if "peak_plastic_strain" in runs:
         yield (
             "In a perfectly plastic section the peak plastic strain (PEEQ) under the sphere does "

@@ -3,6 +3,8 @@
 This file stays free of numba, so that names can be looked up without compiling anything.
 """
 
+from typing import Any
+
 RULES = ("lobatto", "legendre", "layers")
 """Names of the integration rules over the depth; the index is the kernels' switch."""
 SCHEMES = ("leapfrog", "modal")
@@ -38,3 +40,9 @@ BENDING_MODELS = BEAM_MODELS[:2]
 """Those that have every scheme in time; the others have leapfrog alone."""
 WAVE_MODELS = BEAM_MODELS[:4]
 """Those of which every node moves, with any ends, on a foundation, damped, struck anywhere."""
+FLOW_LAWS = ("linear",)
+"""Names of the built-in flow laws of the beam's fibres; the index is the kernels' switch."""
+FLOW_LAWS_OUTSIDE: dict[int, Any] = {}
+"""Those from outside by their numbers (model/flow_law.py), those of an earlier source included."""
+OUTSIDE = 2**52
+"""Least number of laws from outside the package; theirs follow from the hashes of their sources."""

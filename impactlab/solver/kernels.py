@@ -14,8 +14,10 @@ import numpy as np
 from impactlab.copies import Copies
 from impactlab.solver import (
     BEAM_MODELS,
+    FLOW_LAWS_OUTSIDE,
     RESISTANCES,
     euler_bernoulli,
+    flow_stress,
     kink,
     lumped,
     modal,
@@ -198,9 +200,9 @@ def _division(several: bool) -> Callable[..., tuple[BeamGrid, int]]:
 def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[..., None]:
     """Return the kernel of a model of the beam.
 
-    extended: with a load over the contact patch, strain rate, bending across the width, stress
-    beneath the contact and damping of contact or beam, which other kernels are free of, so that
-    they compile sooner.
+    extended: with a load over the contact patch, strain rate, flow law, bending across the width,
+    stress beneath the contact and damping of contact or beam, which other kernels are free of, so
+    that they compile sooner.
 
     It solves every case of R, by records and arrays of as many rows. cases: CASE records. fibres:
     as by model.section.fibre_table. table: of modes, by model.beam_modes, which all cases share, or
@@ -319,7 +321,7 @@ _MODAL = (_kernel("modal", modal.MODEL), _kernel("extended_modal", resisted_mode
 def is_extended(cases: Array) -> Array:
     """Return which cases need an extended kernel; of what, see _kernel."""
     extended = (cases["load"] == CONTACT_PATCH) | (cases["beam_rate_coefficient"] > 0.0)
-    extended |= cases["beam_rate_sensitivity"] > 0.0
+    extended |= (cases["beam_rate_sensitivity"] > 0.0) | (cases["beam_flow_law"] > 0)
     extended |= (cases["width_inertia"] > 0.0) | (cases["contact_prestress"] > 0)
     for name in RESISTANCES:
         extended |= cases[name] > 0.0
@@ -332,12 +334,17 @@ def is_extended(cases: Array) -> Array:
 
 
 def kernel_of(
-    beam_model: int, scheme: int, extended: bool = False, several: bool = False, law: int = 0
+    beam_model: int,
+    scheme: int,
+    extended: bool = False,
+    several: bool = False,
+    law: int = 0,
+    flow_law: int = 0,
 ) -> Callable[..., None]:
     """Return the kernel for a beam model and a scheme, both as numbers.
 
-    extended: see _kernel. several: whether of further spheres. law: number of one from outside the
-    package, which has kernels of its own; 0: all others.
+    extended: see _kernel. several: whether of further spheres. law, flow_law: numbers of those from
+    outside the package, which have kernels of their own; 0: all others.
     """
     if scheme == MODAL:
         kernel = _SEVERAL_MODAL if several else _MODAL[extended]
@@ -345,30 +352,38 @@ def kernel_of(
         kernel = _SEVERAL[BEAM_MODELS[beam_model]]
     else:
         kernel = (_EXTENDED if extended else _LEAPFROG)[BEAM_MODELS[beam_model]]
-    return _with_law(kernel, law) if law else kernel
+    return _with_laws(kernel, law, flow_law) if law or flow_law else kernel
 
 
-_COPIES: dict[int, Copies] = {}
+_COPIES: dict[tuple[int, int], Copies] = {}
 _COPYING = Lock()  # threads of one process share the copies
 
 
-def _with_law(kernel: Callable[..., None], number: int) -> Callable[..., None]:
-    """Return the copy of a kernel, and of all that it calls, for a law from outside.
+def _with_laws(kernel: Callable[..., None], law: int, flow_law: int) -> Callable[..., None]:
+    """Return the copy of a kernel, and of all that it calls, for laws from outside.
 
-    Its functions are named by the hash of the law's source: so are the files in which compiled code
-    is kept, and linkers cannot mix them with those of another source.
+    Its functions are named by the hashes of the laws' sources: so are the files in which compiled
+    code is kept, and linkers cannot mix them with those of another source.
     """
-    law = NUMBERED[number]
+    substituted, hashes = [], []
+    if law:
+        substituted.append(substitutes(NUMBERED[law]))
+        hashes.append(NUMBERED[law].source_hash)
+    if flow_law:
+        substituted.append(flow_stress.substitutes(FLOW_LAWS_OUTSIDE[flow_law]))
+        hashes.append(FLOW_LAWS_OUTSIDE[flow_law].source_hash)
+    suffix, numbers = "_".join(hashes), (law, flow_law)
 
     def finish(original: Any, copy: Any) -> Any:
-        copy.__qualname__ = f"{copy.__qualname__.replace('<locals>.', '')}_{law.source_hash}"
+        copy.__qualname__ = f"{copy.__qualname__.replace('<locals>.', '')}_{suffix}"
         return getattr(original, "decorate", compiled)(copy)
 
     with _COPYING:
-        if number not in _COPIES:
+        if numbers not in _COPIES:
             copies = Copies(finish)
-            for function, substitute in substitutes(law).items():
-                copies.put(function, copies.of(substitute))
-            _COPIES[number] = copies
-        copied: Callable[..., None] = _COPIES[number].of(kernel)
+            for links in substituted:
+                for function, substitute in links.items():
+                    copies.put(function, copies.of(substitute))
+            _COPIES[numbers] = copies
+        copied: Callable[..., None] = _COPIES[numbers].of(kernel)
     return copied

@@ -111,6 +111,12 @@ def _moduli(case: Record) -> Moduli:
     )
 
 
+@compiled
+def fibre_rate(case: Record) -> RateLaw:
+    """Return the law of the strain rate of a case's fibres."""
+    return rate_law(case)
+
+
 @allocating
 def make_whole_room(case: Record) -> Room:
     """Return room for all fibres of the section of a case."""
@@ -138,7 +144,7 @@ def cut_whole_section(case: Record, fibres: Array, room: Room) -> FibreSection:
     for j in range(points):
         lever[j] = E * area[j] * z[j]
     yields = case.beam_yield_stress / (E * z[0])
-    return FibreSection(z, area, lever, stiffness, yields, _moduli(case), rate_law(case), ratio)
+    return FibreSection(z, area, lever, stiffness, yields, _moduli(case), fibre_rate(case), ratio)
 
 
 @allocating
@@ -151,7 +157,7 @@ def with_rate(section: FibreSection, case: Record) -> FibreSection:
         section.stiffness,
         section.yield_curvature,
         section.moduli,
-        rate_law(case),
+        fibre_rate(case),
         section.strain_ratio,
     )
 

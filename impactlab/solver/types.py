@@ -65,7 +65,8 @@ CASE = record(
     width_stiffness width_inertia width_lever width_twist axis_compliance axis_bending
     """,
     integers="contact beam_model load contact_prestress support_left support_right"
-    " axis_held_left axis_held_right beam_shape nodes points rule scheme strikes further",
+    " axis_held_left axis_held_right beam_flow_law beam_shape nodes points rule scheme strikes"
+    " further",
 )
 CASE = np.dtype(
     (
@@ -81,10 +82,10 @@ CASE = np.dtype(
 """Record type of the case table: one record per run, everything the kernels need to know of it.
 
 The fields are the parameters of model/parameters.py, in SI, with contact law, beam model, load,
-supports, shape, rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS, LOADS,
-SUPPORTS, SHAPES, RULES and SCHEMES), the sphere's mass and the shear coefficient resolved,
-thicknesses that the shape does not have as 0, the points of a profile, (PROFILE, 2), and the rows
-of layers, (LAYERS, 4), 0 after the last; rows of further spheres, (SPHERES, 3), as many as
+supports, flow law, shape, rule and scheme as numbers (their places in contact.LAWS, BEAM_MODELS,
+LOADS, SUPPORTS, FLOW_LAWS, SHAPES, RULES and SCHEMES), the sphere's mass and the shear coefficient
+resolved, thicknesses that the shape does not have as 0, the points of a profile, (PROFILE, 2), and
+the rows of layers, (LAYERS, 4), 0 after the last; rows of further spheres, (SPHERES, 3), as many as
 `further` says: place, velocity and delay; the time between strikes, 0 where the beam rests in
 between; the duration in s; whether supports hold the axis; and what follows from them: of the
 section (model/section.py) rho A, rho I, k G A, the stress in the outermost fibre over the bending

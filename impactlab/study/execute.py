@@ -18,7 +18,7 @@ import xarray as xr
 from distributed import Client, Future, KilledWorker, as_completed
 from distributed.comm.core import CommClosedError
 
-from impactlab.model.contact_law import adopt
+from impactlab.model.own_law import adopt
 from impactlab.study.engine import Engine
 from impactlab.study.inventory import Work, open_answers
 from impactlab.study.progress import items_done

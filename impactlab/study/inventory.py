@@ -19,7 +19,7 @@ import xarray as xr
 from dask.delayed import delayed
 
 from impactlab.files import block_rows, unfinished_files
-from impactlab.model.contact_law import outside
+from impactlab.model.parameters import LAW_PARAMETERS
 from impactlab.study.shard import DAMAGE, KEYS, Array, Shard
 from impactlab.study.solvers import SOLVERS, Solver, run_shape, solver_named
 from impactlab.study.store import (
@@ -56,10 +56,13 @@ class Work:
 
     @property
     def laws(self) -> list[Any]:
-        """Contact laws from outside the package, which workers may not know."""
-        if "contact" not in self.design.variables:
-            return []
-        return outside(np.unique(self.design["contact"].values))
+        """Laws from outside the package, which workers may not know."""
+        return [
+            law
+            for parameter, names in LAW_PARAMETERS.items()
+            if parameter in self.design.variables
+            for law in names.outside(np.unique(self.design[parameter].values))
+        ]
 
     @staticmethod
     def of(design: xr.Dataset) -> Work:

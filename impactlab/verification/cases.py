@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 from impactlab.model.bodies import Beam, Sphere
 from impactlab.model.case_table import case_table
@@ -24,7 +25,7 @@ class Sweep:
     duration: float
 
 
-def with_beam_material(impact: Impact, **changes: float) -> Impact:
+def with_beam_material(impact: Impact, **changes: Any) -> Impact:
     """Return `impact` on a beam of another material, its fields as in Material."""
     material = replace(impact.beam.material, **changes)
     return replace(impact, beam=replace(impact.beam, material=material))

@@ -112,9 +112,9 @@ def test_a_law_travels_by_value():
         law.provenance,
         "none known",
     )
-    rebuild, (packed, _, origin) = law.__reduce__()
+    rebuild, (kind, packed, _, origin) = law.__reduce__()
     with pytest.raises(RuntimeError, match="arrived with another source"):
-        rebuild(packed, "0" * 16, origin)
+        rebuild(kind, packed, "0" * 16, origin)
 
 
 def creating(delta, E, R, S_y, nu):

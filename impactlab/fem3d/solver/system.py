@@ -68,8 +68,18 @@ class Group:
         return rows.reshape(len(rows), -1)[:, : self.elements.size]
 
 
+def refuse_flow_law(material: Material) -> None:
+    """Raise ValueError where the metal has a flow law, which no 3-D model has."""
+    if material.flow_law != "linear":
+        raise ValueError(
+            f"Material.flow_law = {material.flow_law!r}: the 3-D model and its decks harden "
+            'linearly: set flow_law="linear"'
+        )
+
+
 def refuse_rate(material: Material) -> None:
     """Raise ValueError where the yield stress depends on the strain rate, which decks leave out."""
+    refuse_flow_law(material)
     for field in ("rate_coefficient", "rate_sensitivity"):
         if (value := getattr(material, field)) > 0.0:
             raise ValueError(
@@ -88,7 +98,8 @@ def rate_law(material: Material) -> Rate | None:
 
 
 def metal(material: Material) -> Metal:
-    """Return E, nu, G, K, sigma_y, H_i, H_k."""
+    """Return E, nu, G, K, sigma_y, H_i, H_k. Raises ValueError for a flow law."""
+    refuse_flow_law(material)
     E, nu = material.youngs_modulus, material.poissons_ratio
     return (
         E,

@@ -258,7 +258,5 @@ CONTACT_LAWS: dict[str, LawRecord] = {law.name: law for law in _REGISTRY}
 """The laws by name; those that the user registers (model/contact_law.py) are added."""
 LAWS = tuple(CONTACT_LAWS)
 """The names of those of this package; the index is the kernels' switch."""
-OUTSIDE = 2**52
-"""Least number of laws from outside the package; theirs follow from the hashes of their sources."""
 NUMBERED: dict[int, Any] = {}
 """Laws from outside by their numbers, those of an earlier source included."""

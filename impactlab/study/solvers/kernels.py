@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -10,14 +11,15 @@ import xarray as xr
 
 from impactlab.methods.runs import listed
 from impactlab.model.case_table import case_table
-from impactlab.model.contact_law import LAW_NAMES, outside
+from impactlab.model.contact_law import LAW_NAMES
 from impactlab.model.cost import work
 from impactlab.model.discretisation import Discretisation
+from impactlab.model.flow_law import FLOW_LAW_NAMES
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.model.parameters import PARAMETERS, SECTION, with_values
+from impactlab.model.parameters import LAW_PARAMETERS, PARAMETERS, SECTION, with_values
 from impactlab.provenance import provenance
 from impactlab.solve import compile_kernels, profile_coordinates, solve
-from impactlab.solver import RESISTANCES
+from impactlab.solver import FLOW_LAWS, RESISTANCES
 from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.switch import DAMPED
 from impactlab.solver.jit import SOURCES_HASH
@@ -71,13 +73,19 @@ def cases(design: xr.Dataset, runs: Array) -> Array:
 
 def check_laws(design: xr.Dataset) -> None:
     """Raise ValueError where this process lacks a law from outside, or has it of another source."""
-    lines = design["contact"].attrs.get(OWN, "") if "contact" in design.variables else ""
-    for name, _, origin in (line.partition(": ") for line in lines.splitlines()):
-        stated = f"contact law {name!r} of this design is {origin}, but this session"
+    stated_laws = [
+        (names, *line.partition(": ")[::2])
+        for parameter, names in LAW_PARAMETERS.items()
+        if parameter in design.variables
+        for line in design[parameter].attrs.get(OWN, "").splitlines()
+    ]
+    for names, name, origin in stated_laws:
+        kind = names.law_class.kind
+        stated = f"{kind} {name!r} of this design is {origin}, but this session"
         advice = "call il.register with it, or install the package that has it as an entry point"
-        if name not in LAW_NAMES:
+        if name not in names:
             raise ValueError(f"{stated} does not know it: {advice}")
-        (law,) = outside([name])
+        (law,) = names.outside([name])
         if not origin.endswith(law.source_hash):
             raise ValueError(
                 f"{stated} has another one, source hash {law.source_hash}: {advice}, or draw the "
@@ -142,17 +150,21 @@ def prepare(design: xr.Dataset) -> None:
     strip = np.atleast_1d(design.get("contact_compliance", impact.contact_compliance)) == "strip"
     stress = np.atleast_1d(design.get("contact_prestress", impact.contact_prestress)) == "bending"
     laws = np.atleast_1d(design.get("contact", impact.contact))
-    own = outside(laws.ravel())
+    own = LAW_NAMES.outside(laws)
+    flow = np.atleast_1d(design.get("beam_flow_law", metal.flow_law))
     dampers = [LAWS[number] for number in DAMPED] + [law.name for law in own if law.damping]
     damped = np.isin(laws, dampers)
     resisted = [
         np.atleast_1d(design.get(name, getattr(impact.beam, name))) > 0.0 for name in RESISTANCES
     ]
-    options = np.meshgrid(patch, rate > 0.0, sensitivity > 0.0, strip, stress, damped, *resisted)
+    by_rate = rate > 0.0, sensitivity > 0.0, ~np.isin(flow, FLOW_LAWS)
+    options = np.meshgrid(patch, *by_rate, strip, stress, damped, *resisted)
     extended = np.unique(np.logical_or.reduce(options)).tolist()
     numbers = [law.number for law in own] + [0] * bool(np.isin(laws, LAWS).any())
+    of_flow = [law.number for law in FLOW_LAW_NAMES.outside(flow)]
+    of_flow += [0] * bool(np.isin(flow, FLOW_LAWS).any())
     several = [True] if "further_spheres" in design.variables else [False]
-    compile_kernels(models, schemes, extended, several, numbers)
+    compile_kernels(models, schemes, extended, several, product(numbers, of_flow))
 
 
 SOLVER = Solver(
