@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
-
 from impactlab.model.checks import require
 from impactlab.model.contact_law import ContactLaw
 from impactlab.model.flow_law import FlowLaw
 from impactlab.model.own_law import OwnLaw, adopt
 from impactlab.verification import flow_law, law_record
 
-Law = TypeVar("Law", ContactLaw, FlowLaw)
 
-
-def register(law: Law) -> Law:
+def register(law: ContactLaw | FlowLaw) -> ContactLaw | FlowLaw:
     """Check a law of one's own, print its numbers, and let studies use it.
 
     Registered again under the same name, a law takes the earlier one's place; stored answers are

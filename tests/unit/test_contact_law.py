@@ -240,11 +240,17 @@ print(il.paper_impact(1.0, "bouncy").contact, CONTACT_LAWS["bouncy"].provenance)
     assert done.stdout.strip() == "bouncy bouncy 1.2, entry point bouncy:law", done.stderr
 
 
-@pytest.mark.slow
-def test_the_how_to_runs():
+def run_how_to(title):
+    """Return the names that the first code of a how-to leaves."""
     text = (Path(__file__).parents[2] / "docs" / "howto.md").read_text(encoding="utf-8")
-    _, _, after = text.partition("## A contact law of your own")
+    _, _, after = text.partition(f"## {title}\n")
     names = {"il": il}
     exec(after.partition("```python")[2].partition("```")[0], names)
+    return names
+
+
+@pytest.mark.slow
+def test_the_how_to_runs():
+    names = run_how_to("A contact law of your own")
     assert 0.0 < names["run"].restitution.item() < 1.0
     assert names["law"].source_hash in names["run"].contact.attrs["origin"]

@@ -18,6 +18,7 @@ from impactlab.solve import fibre_section
 from impactlab.solver import FLOW_LAWS, FLOW_LAWS_OUTSIDE, flow_stress, section
 from impactlab.solver.strain_rate import RateLaw
 from impactlab.study.solvers import kernels
+from tests.unit.test_contact_law import run_how_to
 
 D, Q, H = 40.0, 5.0, 2e9
 STEEL = il.paper_impact().beam.material
@@ -100,6 +101,16 @@ def test_a_slow_fibre_follows_the_curve_and_dissipates_its_area(fibre):
     assert high - low == pytest.approx(2.0 * function(peeq, 0.0, E, S_Y) / E)
 
 
+def test_linear_hardening_dissipates_its_area_in_one_step():
+    """From zero stress beyond the yield stress, where the trapezoidal rule is exact."""
+    flow = plain(flow_stress.substitutes(own("cowper_symonds"))[section.flow_at_rate])
+    trial = 3.0 * S_Y
+    moduli = section.Moduli(E, S_Y, 0.0, 0.0)
+    _, peeq, work = flow(moduli, RateLaw(1.0), trial, trial, 0.0, 0.0, 1e50)
+    area, _ = quad(cowper_symonds, 0.0, peeq, args=(0.0, E, S_Y))
+    assert work + S_Y * peeq == pytest.approx(area, rel=1e-9)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("model", "scheme"),
@@ -118,6 +129,14 @@ def test_an_impact_is_that_of_the_built_in_law(model, scheme):
     for name in ("maximum_deflection", "equivalent_plastic_strain", "midspan_deflection"):
         np.testing.assert_allclose(*(run[name].values for run in runs), rtol=1e-8, atol=1e-15)
     assert runs[0].beam_flow_law.attrs["origin"].endswith(law.source_hash)
+
+
+@pytest.mark.long
+def test_the_how_to_runs():
+    run = run_how_to("A flow law of your own")["run"]
+    assert run.energy_error < 2e-3
+    assert 0.0 < run.peak_plastic_strain < 0.05
+    assert run.plastic_dissipation > 1.0
 
 
 def test_registration_refuses_what_no_metal_does(capsys):

@@ -6,6 +6,9 @@ import pytest
 from shapes import parameters_of
 
 import impactlab as il
+from impactlab.model import flow_law
+from impactlab.model.flow_law import FlowLaw
+from impactlab.model.own_law import adopt
 from impactlab.model.parameters import PARAMETERS, flatten, with_values
 
 BASE = (il.paper_impact(), il.Discretisation())
@@ -18,6 +21,7 @@ OTHER_NAMES = {
     "support_left": "clamped",
     "support_right": "free",
     "beam_shape": "tube",
+    "beam_flow_law": "other_flow",
     "rule": "layers",
     "scheme": "modal",
 }
@@ -32,6 +36,7 @@ STATED |= {"beam_flange_thickness": 3e-3, "beam_web_thickness": 1e-3}
 HARDENING = {"beam_isotropic_hardening_modulus": 2e9, "beam_kinematic_hardening_modulus": 3e9}
 HARDENING |= {"beam_rate_coefficient": 40.4, "beam_rate_exponent": 4.0}
 HARDENING |= {"beam_rate_sensitivity": 0.02, "beam_reference_rate": 2.0}
+HARDENING |= {"beam_flow_law": "other_flow"}
 HARDENING |= {"mass_damping": 9.0, "stiffness_damping": 1e-6, "damping_ratio": 0.01}
 HARDENING |= {"foundation_stiffness": 1e6}
 HARDENING |= {
@@ -52,8 +57,16 @@ TOGETHER = {
     if name not in ("elements_per_radius", "beam_profile", "beam_layers", "further_spheres")
     and "thickness" not in name
 } | {"beam_shape": "rectangle"}
-TOGETHER |= {"beam_rate_sensitivity": 0.0, "strikes": 1}
+TOGETHER |= {"beam_rate_sensitivity": 0.0, "strikes": 1, "beam_flow_law": "linear"}
 """Without what contradicts another."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _other_flow():
+    """Let the session know another flow law than the built-in one."""
+    adopt(FlowLaw(name="other_flow", flow_stress=lambda p, rate, E, S_y: S_y + 1e9 * p))
+    yield
+    del flow_law._NAMED["other_flow"]
 
 
 def follow(impact, discretisation, path):
