@@ -164,7 +164,7 @@ def prepare(design: xr.Dataset) -> None:
     of_flow = [law.number for law in FLOW_LAW_NAMES.outside(flow)]
     of_flow += [0] * bool(np.isin(flow, FLOW_LAWS).any())
     several = [True] if "further_spheres" in design.variables else [False]
-    compile_kernels(models, schemes, extended, several, product(numbers, of_flow))
+    compile_kernels(models, schemes, extended, several, list(product(numbers, of_flow)))
 
 
 SOLVER = Solver(

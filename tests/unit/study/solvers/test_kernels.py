@@ -30,7 +30,7 @@ def test_a_study_compiles_the_kernels_of_its_runs(option, small_design, monkeypa
     monkeypatch.setattr(kernels, "compile_kernels", lambda *kinds: compiled.append(kinds))
     kernels.prepare(design)
     needed = is_extended(kernels.cases(design, np.array([0, 1]))).tolist()
-    assert compiled == [(["timoshenko"], ["leapfrog"], sorted(set(needed)), [False], [0])]
+    assert compiled == [(["timoshenko"], ["leapfrog"], sorted(set(needed)), [False], [(0, 0)])]
 
 
 def test_compiling_all_leaves_no_kernel_out(monkeypatch):
