@@ -24,7 +24,7 @@ Its sampling
     Grid                           all combinations of values
     Sobol, Fast                    shares of the variance
     Morris                         elementary effects
-    Delta, Pawn, RbdFast, Regression
+    Delta, Hsic, Pawn, RbdFast, Regression, Shapley, TargetHsic
                                    from given data: a Latin hypercube
     Latin                          several of these four at once
     Uniform, LogUniform, Normal, TruncatedNormal, Lognormal, Triangular

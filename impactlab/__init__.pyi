@@ -16,11 +16,14 @@ from .methods.distributions import TruncatedNormal as TruncatedNormal
 from .methods.distributions import Uniform as Uniform
 from .methods.fast import Fast as Fast
 from .methods.grid import Grid as Grid
+from .methods.hsic import Hsic as Hsic
+from .methods.hsic import TargetHsic as TargetHsic
 from .methods.latin import Latin as Latin
 from .methods.morris import Morris as Morris
 from .methods.pawn import Pawn as Pawn
 from .methods.rbd_fast import RbdFast as RbdFast
 from .methods.regression import Regression as Regression
+from .methods.shapley import Shapley as Shapley
 from .methods.sobol import Sobol as Sobol
 from .model.bodies import Beam as Beam
 from .model.bodies import Sphere as Sphere

@@ -32,7 +32,8 @@ class Study(StudyFolder):
     ----------
     title : str
         Title, one line.
-    sampling : Grid, Sobol, Fast, Morris, Latin, Delta, Pawn, RbdFast, Regression or mapping
+    sampling : Grid, Sobol, Fast, Morris, Latin, Delta, Hsic, Pawn, RbdFast, \
+        Regression, Shapley, TargetHsic or mapping
         Varied parameters and their values or distributions.
     impact : Impact or mapping, optional
         Impact that all runs start from.

@@ -66,6 +66,15 @@ class Hypercube(DrawnTogether):
         return self
 
     @model_validator(mode="after")
+    def _check_most(self) -> Self:
+        number = len(self.varied)
+        for indices in self.estimates:
+            if indices.most and number > indices.most:
+                reason = f"vary {number}, too many for {indices.name}: vary at most {indices.most}"
+                raise at_key("parameters", reason)
+        return self
+
+    @model_validator(mode="after")
     def _check_rarest(self) -> Self:
         for name in self.words:
             choice = self.varied[name].arguments()

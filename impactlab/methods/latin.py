@@ -19,6 +19,8 @@ def _choices() -> dict[str, Indices]:
 
 
 def _read_names(data: Any, info: ValidationInfo) -> tuple[str, ...]:
+    if data == "all":
+        data = [name for name, record in _choices().items() if not record.most | record.of_limits]
     reader: Any = names("index", _choices()).func
     chosen: tuple[str, ...] = reader(data, info)
     return chosen
@@ -35,12 +37,13 @@ class Latin(Hypercube):
     seed : int, default 1
         Equal seeds give equal runs.
     samples : int
-        Number of runs, at least 64, with "pawn" 100.
+        Number of runs, at least 64, with "pawn" 100, with "shapley" 128.
     correlations : sequence of (str, str, float), optional
         Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
         pairs are independent.
     indices : sequence of str or "all"
-        "delta", "pawn", "rbd_fast", "regression"; the first one ranks the parameters.
+        "delta", "hsic", "pawn", "rbd_fast", "regression", "shapley", "target_hsic"; the first one
+        ranks the parameters; "all" stands for those of any number of parameters and without limits.
 
     Examples
     --------

@@ -95,8 +95,9 @@ class Indices:
     ValueError where the runs are not the sample that their attributes describe. estimate: from
     finite and varying outputs (runs,), the sample and the response's name to indices and
     half-widths, by variable name. judge: from these to verdicts, empty for the best. varying: the
-    parts of the outputs each of which has to vary. fewest: least number of runs. order: why the
-    values need an order, which words have not; "" where they do not.
+    parts of the outputs each of which has to vary. fewest: least number of runs. most: largest
+    number of parameters, 0 for any. of_limits: whether they need a limit of a response. order: why
+    the values need an order, which words have not; "" where they do not.
     """
 
     name: str
@@ -107,4 +108,6 @@ class Indices:
     judge: Callable[[Mapping[str, Floats]], list[SensitivityVerdict]]
     varying: Callable[[Floats, Sample], list[Floats]] = lambda outputs, sample: [outputs]
     fewest: int = 1
+    most: int = 0
+    of_limits: bool = False
     order: str = ""

@@ -186,9 +186,9 @@ _WORDS = {
 _NOT_HERE = {
     r".*(correlat|covarian|copula).*": (
         "parameters correlate by the key correlations of the section sampling with method: latin, "
-        "delta, pawn, rbd_fast or regression alone; Sobol, Morris and FAST indices assume "
-        "independent parameters: for these vary"
-        " the quantities that they depend on, give them one index together "
+        "delta, hsic, pawn, rbd_fast, regression, shapley or target_hsic alone; Sobol, Morris and "
+        "FAST indices assume independent parameters: for these vary the quantities "
+        "that they depend on, give them one index together "
         "(groups), or fix all but one ({distribution: fixed, value: ...})"
     ),
     "groups?": "groups belong to the section sampling with method: sobol or morris",

@@ -138,8 +138,11 @@ def limit_reasons(file: StudyFile | FunctionStudy) -> Reasons:
         if name not in file.responses:
             yield f"limits.{name}", unknown("response", name, file.responses)
     method = file.sampling.method
+    for indices in getattr(file.sampling, "estimates", ()):
+        if indices.of_limits and not file.limits:
+            yield "limits", f"are needed by {indices.name}: state that of a response"
     if file.limits and (reason := NO_DISTRIBUTION.get(method)):
-        methods = "sobol, latin, delta, pawn, rbd_fast or regression"
+        methods = "sobol or a Latin hypercube (latin, delta, hsic, ...)"
         yield "limits", f"give no probabilities with method {method}: {reason} (use {methods})"
     elif file.limits and "distribution" not in file.analyses:
         yield "limits", "need the analysis distribution: list it in analyses"

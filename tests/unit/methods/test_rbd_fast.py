@@ -67,9 +67,11 @@ def test_one_hypercube_gives_the_indices_of_each_method(tmp_path):
     bounds = {name: il.Uniform(-np.pi, np.pi) for name in ("x1", "x2", "x3")}
     kinds = {
         "delta": il.Delta,
+        "hsic": il.Hsic,
         "pawn": il.Pawn,
         "rbd_fast": il.RbdFast,
         "regression": il.Regression,
+        "shapley": il.Shapley,
     }
 
     def analysed(sampling):
@@ -79,7 +81,9 @@ def test_one_hypercube_gives_the_indices_of_each_method(tmp_path):
         return runs, il.analyse(runs)
 
     sampling = il.Latin(
-        samples=128, indices=["pawn", "regression", "delta", "rbd_fast"], parameters=bounds
+        samples=128,
+        indices=["pawn", "regression", "delta", "rbd_fast", "hsic", "shapley"],
+        parameters=bounds,
     )
     runs, together = analysed(sampling)
     for name, kind in kinds.items():

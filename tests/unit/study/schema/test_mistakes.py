@@ -87,7 +87,7 @@ WRONG_IN_SAMPLE = [
     (
         "correlations",
         [["velocity", "beam_depth", 0.5]],
-        "method: latin, delta, pawn, rbd_fast or regression",
+        "method: latin, delta, hsic, pawn",
     ),
     ("correlation", 0.5, "Morris and FAST indices assume independent parameters"),
     ("covariance_matrix", [[1]], "give them one index together (groups)"),
