@@ -14,7 +14,7 @@ SETTINGS = {
     "fast": {"samples": 1188, "harmonics": 4},
     "latin": {"samples": 100, "indices": ["delta", "pawn"]},
 }
-SETTINGS |= {name: {"samples": 100} for name in SAMPLES if name not in SETTINGS}
+SETTINGS |= {name: {"samples": 128} for name in SAMPLES if name not in SETTINGS}
 methods = pytest.mark.parametrize("method", SETTINGS)
 
 

@@ -65,7 +65,8 @@ def sampled():
 
     def text(method, parameters=None, **others):
         section = {"method": method, "parameters": given | (parameters or {})} | others
-        return changed(SAMPLE, {"sampling": section})
+        limits = {"limits": {"peak_force": "10 kN"}} if method == "target_hsic" else {}
+        return changed(SAMPLE, {"sampling": section} | limits)
 
     return text
 

@@ -73,7 +73,7 @@ def test_morris_takes_no_distribution_without_ends(refused, read, sampled, given
 @pytest.mark.parametrize("method", sorted(METHODS.keys() - {"grid"}))
 def test_failed_runs_are_no_indices_unless_asked_to_be_supplied(read, refused, sampled, method):
     own = {name: keys for name, keys, _ in RUNS}
-    text = sampled(method, **own.get(method, {"samples": 100}))
+    text = sampled(method, **own.get(method, {"samples": 128}))
     assert read(text).analysis.failed_runs == "fail"
     asked = text[:-1] + ', "analysis": {"failed_runs": "impute"}}'
     assert read(asked).analysis.failed_runs == "impute"
