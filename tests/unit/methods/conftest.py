@@ -27,6 +27,8 @@ def sampled(designed):
     def make(method, parameters=None, **others):
         section = {"method": method, "parameters": UNIFORM | (parameters or {})} | others
         study = {"title": "-", "impact": {"base": "paper"}, "duration": 1e-3, "sampling": section}
+        if method == "target_hsic":
+            study["limits"] = {"peak_force": 1e4}
         return designed(json.dumps(study))
 
     return make
