@@ -32,6 +32,7 @@ Its sampling
 
 What the runs say
     analyse         convergence and sensitivity, with verdicts
+    runs_of_table   runs from a design made elsewhere, or from measurements
     answers         the same in sentences
     explain         why responses are missing or doubtful, in sentences
     table           runs or indices as a pandas DataFrame

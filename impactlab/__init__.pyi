@@ -1,6 +1,7 @@
 from . import plot as plot
 from .analysis.analyse import analyse as analyse
 from .analysis.surrogate import load_surrogate as load_surrogate
+from .api.data import runs_of_table as runs_of_table
 from .api.definition import Study as Study
 from .api.experiment import calibrate as calibrate
 from .api.experiment import compare as compare

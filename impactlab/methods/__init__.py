@@ -23,6 +23,7 @@ from impactlab.methods.hypercube import Hypercube
 from impactlab.methods.record import Family, Indices
 from impactlab.methods.runs import Sample
 from impactlab.methods.sampling import RandomSample, Sampling
+from impactlab.methods.table import Table
 from impactlab.validation.fields import name_at
 
 for _module in iter_modules([str(Path(__file__).parent)]):
@@ -41,9 +42,11 @@ SAMPLES: Mapping[str, type[RandomSample]] = {
     )
     if "label" in vars(kind)
 }
-"""Methods that draw samples, by their names in study files: the Latin hypercubes last."""
-METHODS: Mapping[str, type[Sampling]] = {Grid.name(): Grid, **SAMPLES}
-"""Samples, and the grid."""
+"""Kinds of samples, by their names in study files and datasets: the Latin hypercubes last."""
+METHODS: Mapping[str, type[Sampling]] = {Grid.name(): Grid} | {
+    name: kind for name, kind in SAMPLES.items() if kind is not Table
+}
+"""Methods of studies: samples that are drawn, and the grid."""
 INDICES: Mapping[str, Indices] = {
     record.name: record for kind in SAMPLES.values() for record in kind.records
 }

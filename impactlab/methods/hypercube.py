@@ -25,7 +25,7 @@ Places = NDArray[np.uint64]
 Correlations = Sequence[tuple[str, str, float]]
 """Two parameters and Spearman's rank correlation of them; pairs that are not listed have 0."""
 _LEAST = 1e-8  # smallest eigenvalue of a matrix that counts as positive definite
-_FEWEST_OF_WORD = 20
+FEWEST_OF_WORD = 20
 """Runs per word: bootstrap resamples then practically never hold fewer than two."""
 
 
@@ -79,11 +79,11 @@ class Hypercube(DrawnTogether):
         for name in self.words:
             choice = self.varied[name].arguments()
             weight, word = min(zip(choice["weights"], choice["values"], strict=True))
-            if self.samples * weight < _FEWEST_OF_WORD:
+            if self.samples * weight < FEWEST_OF_WORD:
                 reason = (
                     f"gives {word!r} about {self.samples * weight:.0f} of {self.samples:,} runs, "
-                    f"and {_FEWEST_OF_WORD} are needed: raise samples to "
-                    f"{math.ceil(_FEWEST_OF_WORD / weight):,}, or leave the word out"
+                    f"and {FEWEST_OF_WORD} are needed: raise samples to "
+                    f"{math.ceil(FEWEST_OF_WORD / weight):,}, or leave the word out"
                 )
                 raise at_key(f"parameters.{name}", reason)
         return self

@@ -1,0 +1,75 @@
+"""Coverage of the intervals of first orders of tables: `python tests/benchmarks/table_coverage.py`."""
+
+import numpy as np
+
+import impactlab as il
+from impactlab.methods import INDICES
+from impactlab.methods.delta import first_orders
+from impactlab.methods.runs import Sample
+
+SEEDS, QUANTILE = 200, 1.959964
+COVARIANCE = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.8], [0.0, 0.8, 1.0]])
+A = np.array([0.0, 1.0, 4.5, 9.0, 99.0, 99.0])
+PARTS = 1 / (3 * (1 + A) ** 2)
+
+
+def line(weights):
+    """Return a line over normal inputs and its first orders, squares of covariances."""
+    shares = (COVARIANCE @ weights) ** 2 / (weights @ COVARIANCE @ weights)
+
+    def draw(rng, rows):
+        inputs = rng.multivariate_normal(np.zeros(3), COVARIANCE, rows)
+        return inputs, inputs @ weights
+
+    return draw, shares
+
+
+def ishigami(rng, rows):
+    x = rng.uniform(-np.pi, np.pi, (rows, 3))
+    return x, np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
+
+
+def g(rng, rows):
+    x = rng.random((rows, 6))
+    return x, np.prod((np.abs(4 * x - 2) + A) / (1 + A), axis=1)
+
+
+def factorial(rng, rows):
+    side = round(rows**0.5)
+    x = np.indices((side, side)).reshape(2, -1).T.astype(float)
+    return x, x @ [1.0, 2.0]
+
+
+def noise(rng, rows):
+    x = np.column_stack([rng.integers(5, size=rows), rng.random(rows)]).astype(float)
+    return x, x[:, 0] / np.sqrt(2) + rng.standard_normal(rows)
+
+
+CASES = {
+    "line": line(np.array([1.0, 1.0, 0.5])),
+    "unused": line(np.array([1.0, 1.0, 0.0])),
+    "ishigami": (ishigami, np.array([0.3139, 0.4424, 0.0])),
+    "g": (g, PARTS / (np.prod(1 + PARTS) - 1)),
+    "factorial": (factorial, np.array([0.2, 0.8])),
+    "noise": (noise, np.array([0.5, 0.0])),
+}
+
+
+def main():
+    for name, (draw, exact) in CASES.items():
+        for rows in (64, 256, 1024):
+            held = np.zeros((2, len(exact)))
+            for seed in range(SEEDS):
+                inputs, outputs = draw(np.random.default_rng(seed + 1), rows)
+                columns = {f"x{i}": column for i, column in enumerate(inputs.T)}
+                runs = il.runs_of_table(columns, {"y": outputs}, indices="rbd_fast", seed=seed)
+                sample, values = Sample.of(runs), runs["y"].values
+                ranks, errors = first_orders(sample.inputs, values)
+                waves = INDICES["rbd_fast"].estimate(values, sample, "y")
+                held[0] += np.abs(ranks - exact) <= QUANTILE * errors
+                held[1] += np.abs(waves["first_order"] - exact) <= waves["first_order_interval"]
+            print(name, rows, *(100 * held / SEEDS).round())
+
+
+if __name__ == "__main__":
+    main()
