@@ -1,4 +1,4 @@
-"""Coverage of the intervals of first orders of tables: `python tests/benchmarks/table_coverage.py`."""
+"""Coverage of the intervals of first orders of tables, measured over 200 seeds."""
 
 import numpy as np
 
