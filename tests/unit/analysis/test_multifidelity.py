@@ -1,0 +1,66 @@
+"""Statistics of a slow model by runs of a fast one, on a pair with known answers."""
+
+import numpy as np
+import pytest
+
+import impactlab as il
+
+VARIANCE = 0.5 * (1 + 0.1 * np.pi**4 / 5) ** 2 + 49 / 8 + 0.08 * np.pi**8 / 225
+RUNS, LOW_RUNS, REPETITIONS = 40, 400, 150
+
+
+def ishigami_pair(seed, correlation, runs=RUNS, low_runs=LOW_RUNS):
+    """Ishigami's function, and a copy with a bias, a scale and an independent error."""
+    x1, x2, x3 = np.random.default_rng([7, seed]).uniform(-np.pi, np.pi, (3, low_runs))
+    high = np.sin(x1) * (1 + 0.1 * x3**4) + 7 * np.sin(x2) ** 2
+    error = np.sqrt(2 * VARIANCE * (correlation**-2 - 1)) * np.cos(x3)
+    return {"low": 2 + 1.5 * (high + error), "high": high[:runs]}
+
+
+@pytest.mark.parametrize("correlation", [0.5, 0.9, 0.99])
+def test_the_mean_is_unbiased_covered_and_as_accurate_as_theory_says(correlation):
+    pairs = [ishigami_pair(seed, correlation) for seed in range(REPETITIONS)]
+    means = [il.Multifidelity(**pair).mean() for pair in pairs]
+    values = np.array([mean.value for mean in means])
+    assert abs(values.mean() - 3.5) < 3 * values.std() / np.sqrt(REPETITIONS)
+    covered = np.mean([mean.interval[0] < 3.5 < mean.interval[1] for mean in means])
+    assert 0.90 < covered < 0.99  # 95 % give or take 2.6 standard deviations of 150 repetitions
+    ratio = values.var() / (VARIANCE / RUNS)
+    assert ratio == pytest.approx(1 - correlation**2 * (1 - RUNS / LOW_RUNS), rel=0.3)
+
+
+def test_the_probability_comes_from_the_pairs_where_the_fast_model_is_useless():
+    rng = np.random.default_rng(3)
+    high = rng.normal(size=400)
+    models = il.Multifidelity(low=rng.normal(size=4000), high=high)
+    assert models.exceedance(0.5).value == pytest.approx(np.mean(high > 0.5), abs=0.01)
+    assert models.exceedance(0.5).saving == pytest.approx(1.0, abs=0.05)
+
+
+def test_the_best_number_of_fast_runs_minimises_the_variance_for_a_budget():
+    pair = ishigami_pair(1, 0.9)
+    models, cost = il.Multifidelity(**pair), 1000.0
+    ratios = np.geomspace(1, 1000, 3001)
+    variances = (1 - models.correlation**2 * (1 - 1 / ratios)) * (cost + ratios)
+    best = ratios[variances.argmin()]
+    assert models.low_runs_per_high_run(cost_ratio=cost) == pytest.approx(best, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"high": np.arange(5.0)}, "high: has 5 runs: at least 20"),
+        ({"high": np.full(40, np.nan)}, "40 of 40 runs have no answer"),
+        ({"low": np.arange(50.0)}, "low: has 50 runs: at least twice the 40"),
+        ({"low": np.ones(400)}, "do not vary"),
+        ({"confidence": 95}, "confidence = 95"),
+    ],
+)
+def test_what_gives_no_statistics_is_refused(changes, message):
+    with pytest.raises(ValueError, match=message):
+        il.Multifidelity(**ishigami_pair(1, 0.9) | changes)
+
+
+def test_a_limit_that_hardly_a_run_exceeds_is_refused():
+    with pytest.raises(ValueError, match="0 of 40 runs of high exceed it"):
+        il.Multifidelity(**ishigami_pair(1, 0.9)).exceedance(100.0)
