@@ -70,7 +70,8 @@ class Multifidelity:
     -----
     Over 400 repetitions of 40 pairs of Ishigami's function and a copy of correlation 0.5, 0.9 and
     0.99, intervals of 95 % hold the mean in 94.5 to 95.5 %, a probability of 0.45 in 93 to 95.5 %
-    and one of 0.16 in 94 to 98 %. Draws have to be independent: those of `Sobol` and `Latin` are not.
+    and one of 0.16 in 94 to 98 %. Draws have to be independent, as those of `Sobol` and `Latin` are
+    not.
 
     Examples
     --------
@@ -106,14 +107,34 @@ class Multifidelity:
 
     @property
     def correlation(self) -> float:
-        """Correlation of both models in the pairs."""
+        """Return the correlation of both models in the pairs.
+
+        Returns
+        -------
+        float
+            From -1 to 1.
+        """
         return float(np.corrcoef(self.low[: self.high.size], self.high)[0, 1])
 
     def low_runs_per_high_run(self, cost_ratio: float) -> float:
         """Return the number that gives the mean the least variance for a budget.
 
-        cost_ratio: cost of a slow run over that of a fast one. Peherstorfer, Willcox and
-        Gunzburger (2016), SIAM J. Sci. Comput. 38, A3163, equation (3.16). At least 1.
+        Peherstorfer, Willcox and Gunzburger (2016), SIAM J. Sci. Comput. 38, A3163.
+
+        Parameters
+        ----------
+        cost_ratio : float
+            Cost of a slow run over that of a fast one.
+
+        Returns
+        -------
+        float
+            Fast runs per slow run, at least 1.
+
+        Raises
+        ------
+        ValueError
+            If the ratio is not positive.
         """
         if not (np.isfinite(cost_ratio) and cost_ratio > 0.0):
             raise ValueError(f"Multifidelity: cost_ratio = {cost_ratio}: must be positive")
@@ -121,7 +142,13 @@ class Multifidelity:
         return max(1.0, float(np.sqrt(cost_ratio * square / max(1.0 - square, 1e-12))))
 
     def mean(self) -> FidelityEstimate:
-        """Return the mean of the slow model."""
+        """Return the mean of the slow model.
+
+        Returns
+        -------
+        FidelityEstimate
+            In the unit of the output.
+        """
 
         def expectation(line: Floats, errors: Floats) -> Floats:
             return line
@@ -131,8 +158,23 @@ class Multifidelity:
     def exceedance(self, limit: float) -> FidelityEstimate:
         """Return the probability that the slow model exceeds the limit, interval even in its logit.
 
-        It is a little too large, by 3 % at a probability of 0.16 from 40 pairs, because samples with
-        hardly a run beyond the limit are refused. Raises ValueError where fewer than three of the pairs are on one side of the limit.
+        It is a little too large, by 3 % at a probability of 0.16 from 40 pairs, because samples
+        with hardly a run beyond the limit are refused.
+
+        Parameters
+        ----------
+        limit : float
+            In the unit of the output.
+
+        Returns
+        -------
+        FidelityEstimate
+            From 0 to 1.
+
+        Raises
+        ------
+        ValueError
+            If fewer than three of the pairs are on one side of the limit.
         """
         if not np.isfinite(limit):
             raise ValueError(f"Multifidelity.exceedance: limit = {limit}: must be a number")
@@ -164,7 +206,7 @@ class Multifidelity:
     ) -> FidelityEstimate:
         """Return the mean of a function of the output, from pseudo-values of the pairs.
 
-        expectation: of the function, from values on the line and the errors about it. scale: the one
+        expectation: of the function, from values on the line and the errors about it. scale: that
         on which the interval is even, and its inverse.
         """
 
@@ -220,11 +262,12 @@ def _interval(
         return value - margin, value + margin
     forward, backward = scale
     with np.errstate(invalid="ignore", divide="ignore"):
-        centre, ends = forward(np.float64(value)), forward(value * np.array([1 - 1e-6, 1 + 1e-6]))
-    if not np.isfinite([centre, *ends]).all():
+        low, centre, high = forward(value * np.array([1 - 1e-6, 1, 1 + 1e-6]))
+    if not np.isfinite([low, centre, high]).all():
         raise ValueError(
             f"Multifidelity: the estimate {value:.3g} is impossible: add runs of high, because the "
             "pairs predict it too poorly"
         )
-    width = margin * (ends[1] - ends[0]) / (2e-6 * value)
-    return float(backward(centre - width)), float(backward(centre + width))
+    width = margin * (high - low) / (2e-6 * value)
+    lower, upper = backward(centre + width * np.array([-1, 1]))
+    return float(lower), float(upper)
