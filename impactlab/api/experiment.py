@@ -170,3 +170,66 @@ def calibrate(
         study.declared, study.folder, measurements, engine, contact, model_error
     )
     return posterior.assign_attrs(answer="\n".join(draw_and_tell(posterior, study.folder)))
+
+
+def rare_event(
+    study: Study,
+    *,
+    samples: int = 500,
+    runs: int = 6000,
+    coefficient_of_variation: float = 0.1,
+    workers: int = CORES,
+) -> xr.Dataset:
+    """Estimate the small probability that a response exceeds its limit, and the likeliest way.
+
+    Importance sampling by cross-entropy: samples of the solver move towards the limit, and a last
+    one gives the estimate (docs/sensitivity.md). The runs are kept in the study's folder: the same
+    call resumes where it stopped.
+
+    Parameters
+    ----------
+    study : Study
+        Sample of any method, of which the distributions and the seed count, with one limit.
+    samples : int, default 500
+        Number of runs per level, at least 200.
+    runs : int, default 6000
+        Largest number of all runs, at least 4 `samples`.
+    coefficient_of_variation : float, default 0.1
+        Standard error to reach over the probability, from 0.01 to 0.5.
+    workers : int, optional
+        Number of threads; by default that of the machine's cores.
+
+    Returns
+    -------
+    xarray.Dataset
+        Numbers `probability`, `low`, `high`, `coefficient_of_variation`, `verdict` and others;
+        `design_point` on `parameter` in standard normal scores; the attribute `answer` holds the
+        findings in sentences.
+
+    Raises
+    ------
+    StudyError
+        If the study has no sample, correlations, or not one limit.
+    ValueError
+        If a setting is out of range, or another study has results of this name.
+
+    References
+    ----------
+    Rubinstein (1999), Methodol. Comput. Appl. Probab. 1, 127; Kurtz and Song (2013), Struct. Saf.
+    42, 35 (both recalled, not read).
+
+    Examples
+    --------
+    >>> study = il.Study(
+    ...     title="Load", function=lambda load, strength: load - strength, limits={"value": 0},
+    ...     sampling=il.Pawn(samples=128, parameters={
+    ...         "load": il.Normal(5, 1), "strength": il.Normal(11, 1)}))
+    >>> rare = il.rare_event(study, workers=1)  # exactly 1.1e-5
+    >>> bool(rare.low < 1.1e-5 < rare.high)
+    True
+    """
+    from impactlab.study.rare_event import rare_event as probability
+
+    engine = local_engine(workers)
+    settings = samples, runs, coefficient_of_variation
+    return probability(study.declared, study.folder, engine, *settings)

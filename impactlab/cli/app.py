@@ -28,6 +28,7 @@ _COMMANDS = {
     "analyse": "impactlab.cli.results:analyse",
     "predict": "impactlab.cli.results:predict",
     "calibrate": "impactlab.cli.results:calibrate",
+    "rare": "impactlab.cli.results:rare",
     "verify": "impactlab.cli.solve:verify",
     "figures": "impactlab.cli.results:figures",
     "animate": "impactlab.cli.results:animate",

@@ -268,6 +268,32 @@ def calibrate(
         print(line)
 
 
+def rare(
+    study: StudyFile,
+    samples: Annotated[int, typer.Option(help="Runs per level.")] = 500,
+    runs: Annotated[int, typer.Option(help="Largest number of all runs.")] = 6000,
+    variation: Annotated[
+        float, typer.Option(help="Coefficient of variation of the probability to reach.")
+    ] = 0.1,
+    workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
+) -> None:
+    """Estimate a probability of 1e-3 to 1e-7 that a response exceeds its limit.
+
+    Draws samples that move towards the limit, solves them, and prints the probability and the
+    likeliest way beyond the limit. Runs are kept in results/NAME/rare_event, and are not solved
+    again.
+    """
+    stop_solving()
+    from impactlab.study import steps
+    from impactlab.study.engine import Engine
+    from impactlab.study.rare_event import rare_event
+    from impactlab.study.schema.readers import read_study
+
+    declared = read_study(study)
+    folder, engine = steps.results_folder(declared.name), Engine("threads", workers)
+    print(rare_event(declared, folder, engine, samples, runs, variation).attrs["answer"])
+
+
 def animate(
     stored: Annotated[
         Path,

@@ -113,6 +113,13 @@ class Distribution(Entry):
         low, high = getattr(self, "low", -np.inf), getattr(self, "high", np.inf)
         return np.asarray(np.clip(values, low, high))
 
+    def at_scores(self, scores: ArrayLike) -> Floats:
+        """Return the values (same shape) at standard normal scores, exact in both tails."""
+        frozen, tail = self._frozen(), scipy.special.ndtr(-np.abs(scores))
+        values = np.where(np.less(scores, 0), frozen.ppf(tail), frozen.isf(tail))
+        low, high = getattr(self, "low", -np.inf), getattr(self, "high", np.inf)
+        return np.asarray(np.clip(values, low, high))
+
     def cumulative(self, values: ArrayLike) -> Floats:
         """Return the probabilities (same shape) that a draw lies below these values."""
         return np.asarray(self._frozen().cdf(values))

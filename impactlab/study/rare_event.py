@@ -1,0 +1,190 @@
+"""The probability of a rare event from runs of a study's solver, kept and found again on disk."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import scipy  # its stats are loaded when first used
+import xarray as xr
+
+from impactlab.analysis.rare_event import Estimate, RareEventVerdict
+from impactlab.analysis.rare_event import estimate as estimated
+from impactlab.methods.distributions import Choice
+from impactlab.methods.hypercube import Hypercube
+from impactlab.methods.runs import usable
+from impactlab.methods.sampling import RandomSample
+from impactlab.model.checks import integer
+from impactlab.model.quantities import engineering
+from impactlab.provenance import provenance
+from impactlab.study import RARE_EVENT, steps
+from impactlab.study.design import design
+from impactlab.study.engine import Engine
+from impactlab.study.execute import execute
+from impactlab.study.ownership import check_unclaimed
+from impactlab.study.schema.declarations import AnyStudy
+from impactlab.types import Floats
+from impactlab.validation.errors import Problem, StudyError
+from impactlab.verdicts import flagged
+
+_FEWEST = 200  # runs per level
+_MATTERS = 0.5  # standard deviations from which on the answer names a parameter
+
+
+def rare_event(
+    study: AnyStudy, folder: Path, engine: Engine, samples: int, runs: int, target: float
+) -> xr.Dataset:
+    """Return the probability that a study's response exceeds its limit; see il.rare_event.
+
+    folder: of the study's results. Runs are kept in `folder`/rare_event and are not solved again.
+
+    Raises StudyError for a study without a sample or with other than one limit, ValueError for
+    settings out of range and where another study has results in `folder`.
+    """
+    sampling = study.sampling
+    if not isinstance(sampling, RandomSample):
+        reason = "a rare event needs distributions: use any method but grid"
+        raise StudyError(Problem(str(study.path), "sampling.method", reason))
+    if isinstance(sampling, Hypercube) and sampling.correlations:
+        reason = "are not known to the search for a rare event: take them out"
+        raise StudyError(Problem(str(study.path), "sampling.correlations", reason))
+    if len(study.limits) != 1:
+        reason = f"state {len(study.limits)} limits, and a rare event has one: state one response"
+        raise StudyError(Problem(str(study.path), "limits", reason))
+    samples = integer("rare_event", "samples", samples, _FEWEST)
+    runs = integer("rare_event", "runs", runs, 4 * samples)
+    if not 0.01 <= target <= 0.5:
+        message = "must be from 0.01 to 0.5"
+        raise ValueError(f"rare_event: coefficient_of_variation = {target!r}: {message}")
+    check_unclaimed(study, folder / "runs.nc")
+    ((response, limit),) = study.limits.items()
+    declared = steps.resolved(study, folder, engine) or study
+    first = design(declared, 0, 1).assign_attrs(histories=0, profiles=0)
+    units = ""
+
+    def solve(scores: Floats) -> Floats:
+        nonlocal units
+        solved = execute(_at_scores(first, sampling, scores), folder / RARE_EVENT, engine)
+        units = str(solved[response].attrs.get("units", "1"))
+        return np.asarray(usable(solved, response).values[0])
+
+    result = estimated(
+        solve,
+        len(sampling.varied),
+        limit,
+        seed=sampling.seed,
+        samples=samples,
+        most=runs,
+        target=target,
+        confidence=study.analysis.confidence,
+    )
+    return _dataset(result, first, sampling, response, limit, units).assign_attrs(
+        study.attributes() | provenance(),
+        confidence=study.analysis.confidence,
+        target=target,
+        answer=_answer(result, first, sampling, response, engineering(limit, units), study),
+    )
+
+
+def _at_scores(first: xr.Dataset, sampling: RandomSample, scores: Floats) -> xr.Dataset:
+    """Return the design whose runs lie at standard normal scores, (runs, parameter)."""
+    runs = first.isel(run=np.zeros(len(scores), int))
+    columns = {
+        name: ("run", column, first[name].attrs)
+        for name, column in _values(sampling, scores).items()
+    }
+    numbers = ("run", np.arange(len(scores)), first["run"].attrs)
+    return runs.assign_coords({"run": numbers} | columns)
+
+
+def _values(sampling: RandomSample, scores: Floats) -> dict[str, np.ndarray]:
+    """Return the values, or words, of each varied parameter at scores (runs, parameter)."""
+    return {
+        name: entry.quantile(scipy.special.ndtr(column))
+        if isinstance(entry, Choice)
+        else entry.at_scores(column)
+        for (name, entry), column in zip(sampling.varied.items(), scores.T, strict=True)
+    }
+
+
+def _dataset(
+    result: Estimate,
+    first: xr.Dataset,
+    sampling: RandomSample,
+    response: str,
+    limit: float,
+    units: str,
+) -> xr.Dataset:
+    """Return the numbers of an estimate with names and units."""
+    gap = np.full(len(sampling.varied), np.nan)
+    point = gap if result.design_point is None else result.design_point
+    distance = float(np.sqrt((point**2).sum()))
+    numbers: dict[str, tuple[float, str, str]] = {
+        "limit": (limit, units, f"limit of {response}"),
+        "probability": (result.probability, "1", "probability that the response exceeds it"),
+        "low": (result.low, "1", "lower end of its interval, if no missing run exceeds the limit"),
+        "high": (result.high, "1", "upper end of its interval, if every missing run does"),
+        "if_none": (result.if_none, "1", "probability if no missing run exceeds the limit"),
+        "if_all": (result.if_all, "1", "probability if every missing run does"),
+        "check": (result.check, "1", "independent estimate by the sample before the last"),
+        "coefficient_of_variation": (
+            result.coefficient_of_variation,
+            "1",
+            "standard error of the probability over itself",
+        ),
+        "first_order": (
+            float(scipy.special.ndtr(-distance)),
+            "1",
+            "probability beyond a plane through the design point (FORM)",
+        ),
+        "runs": (result.runs, "1", "runs solved, in all"),
+        "last_sample": (result.last_sample, "1", "runs of the sample that gives the estimate"),
+        "missing": (result.missing, "1", "of these, runs without an answer"),
+    }
+    variables = {
+        name: ((), value, {"units": unit, "long_name": meaning})
+        for name, (value, unit, meaning) in numbers.items()
+    }
+    scores = {"units": "1", "long_name": "design point, in standard normal scores"}
+    levels = {"units": units, "long_name": "limit of each level"}
+    code = xr.DataArray(int(result.verdict))
+    return xr.Dataset(
+        variables
+        | {
+            "design_point": ("parameter", point, scores),
+            "level": ("levels", np.array(result.levels), levels),
+        },
+        {"parameter": list(sampling.varied)},
+    ).assign(verdict=flagged(code, RareEventVerdict, "verdict on the probability"))
+
+
+def _answer(
+    result: Estimate,
+    first: xr.Dataset,
+    sampling: RandomSample,
+    response: str,
+    limit: str,
+    study: AnyStudy,
+) -> str:
+    """Return the findings in sentences: the probability first."""
+    subject = f"{response.replace('_', ' ')} exceeds {limit}"
+    if result.design_point is None:
+        return f"No probability that the {subject}: {result.verdict.meaning} ({result.runs:,} runs)"
+    text = (
+        f"The {subject} with probability {result.probability:.2g} ({result.low:.2g} to "
+        f"{result.high:.2g}, {100 * study.analysis.confidence:g} % interval; coefficient of "
+        f"variation {result.coefficient_of_variation:.2g}; {result.runs:,} runs)."
+    )
+    if result.verdict is not RareEventVerdict.USABLE:
+        text += f" Caution: {result.verdict.meaning}."
+    places = []
+    point = dict(zip(sampling.varied, result.design_point.tolist(), strict=True))
+    values = _values(sampling, result.design_point[np.newaxis])
+    for name, score in sorted(point.items(), key=lambda item: -abs(item[1])):
+        long_name = str(first[name].attrs.get("long_name", name.replace("_", " ")))
+        if isinstance(sampling.varied[name], Choice):
+            places.append(f"{long_name} {values[name][0]}")
+        elif abs(score) >= _MATTERS:
+            value = engineering(float(values[name][0]), str(first[name].attrs.get("units", "1")))
+            places.append(f"{long_name} {score:+.1f} sd ({value})".replace("-", "−"))
+    return f"{text} The likeliest way to exceed it: {', '.join(places)}."

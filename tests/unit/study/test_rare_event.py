@@ -1,0 +1,72 @@
+"""Rare events of studies: stored runs, workers, words, refusals."""
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+import impactlab as il
+
+
+def load_minus_strength(load, strength):
+    return load - strength
+
+
+def study(folder, function=load_minus_strength, **changes):
+    sampling = il.Pawn(
+        samples=128, parameters={"load": il.Normal(5, 1), "strength": il.Normal(11, 1)}
+    )
+    arguments = {"sampling": sampling, "limits": {"value": 0}} | changes
+    return il.Study(title="Load", function=function, results=folder, **arguments)
+
+
+def test_runs_are_kept_and_give_the_same_bits_for_any_number_of_workers(tmp_path):
+    first = il.rare_event(study(tmp_path / "one"), workers=1)
+    again = il.rare_event(study(tmp_path / "one"), workers=1)
+    other = il.rare_event(study(tmp_path / "two"), workers=2)
+    assert first.probability.item() == again.probability.item() == other.probability.item()
+    np.testing.assert_array_equal(first.design_point, other.design_point)
+    exact = norm.sf(6 / np.sqrt(2))
+    assert first.low < exact < first.high
+    assert "likeliest way to exceed it: " in first.answer
+    assert "strength −" in first.answer
+    assert "load +" in first.answer
+
+
+def test_words_are_drawn_with_their_weights(tmp_path):
+    def response(grade, load):
+        return load + {"good": 0.0, "poor": 2.0}[grade]
+
+    sampling = il.Pawn(
+        samples=256,
+        parameters={
+            "grade": il.Choice(["good", "poor"], weights=[9, 1]),
+            "load": il.Normal(0, 1),
+        },
+    )
+    rare = il.rare_event(
+        study(tmp_path, response, sampling=sampling, limits={"value": 5}), workers=1
+    )
+    exact = 0.1 * norm.sf(3) + 0.9 * norm.sf(5)
+    assert rare.low < exact < rare.high
+    assert "grade poor" in rare.answer
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"limits": None}, "limits: state 0 limits"),
+        (
+            {"sampling": il.Grid(parameters={"load": [1, 2], "strength": [3]}), "limits": None},
+            "use any method but grid",
+        ),
+    ],
+)
+def test_studies_without_distributions_or_limit_are_refused(tmp_path, changes, reason):
+    with pytest.raises(il.StudyError, match=reason):
+        il.rare_event(study(tmp_path, **changes), workers=1)
+
+
+def test_settings_out_of_range_are_refused(tmp_path):
+    for settings in ({"samples": 10}, {"runs": 500}, {"coefficient_of_variation": 2.0}):
+        with pytest.raises(ValueError, match=next(iter(settings))):
+            il.rare_event(study(tmp_path), workers=1, **settings)
