@@ -30,6 +30,9 @@ finite variance."""
 _COMPONENTS = (1, 2, 3, 4, 6, 8, 12)
 _ITERATIONS = 30
 _SPREAD = 0.1  # share of the draws that all components get alike
+_ALL_ROUND, _LEAST_REACH = 0.2, 1.5
+"""Share of the draws around the middle in all directions, as far out as the components, and their
+least width: regions that the levels have missed show up in the error, and are found."""
 _MARGIN = 1.2  # on the size of the last sample
 _HEAVY = 0.1
 _DISAGREEING = 3.0  # standard errors between both estimates
@@ -56,16 +59,17 @@ class RareEventVerdict(Verdict):
 
 @dataclass(frozen=True)
 class Mixture:
-    """Normal densities of one width: weights (components,) and means (components, parameter)."""
+    """Normal densities: weights and widths (components,) and means (components, parameter)."""
 
     weights: Floats
     means: Floats
+    widths: Floats
 
     def components(self, scores: Floats) -> Floats:
         """Return the logarithm of each weighted density at scores, (components, runs)."""
         squares = np.stack([((scores - mean) ** 2).sum(axis=1) for mean in self.means])
-        scale = scores.shape[1] * np.log(WIDTH)
-        return np.asarray(np.log(self.weights)[:, None] - squares / (2 * WIDTH**2) - scale)
+        scales = np.log(self.weights) - scores.shape[1] * np.log(self.widths)
+        return np.asarray(scales[:, None] - squares / (2 * self.widths[:, None] ** 2))
 
     def log_ratio(self, scores: Floats) -> Floats:
         """Return the logarithm of the standard normal density over that of the mixture, (runs,)."""
@@ -77,7 +81,7 @@ class Mixture:
         ends = np.cumsum(self.weights)[:-1]
         component = np.searchsorted(ends, rng.random(runs), side="right")
         normal = rng.standard_normal((runs, self.means.shape[1]))
-        return np.asarray(self.means[component] + WIDTH * normal)
+        return np.asarray(self.means[component] + self.widths[component, None] * normal)
 
 
 @dataclass(frozen=True)
@@ -221,7 +225,14 @@ def _fitted(scores: Floats, log_ratio: Floats, rng: np.random.Generator) -> Mixt
             best, least = mixture, criterion
     assert best is not None  # one component is always possible
     even = _SPREAD / best.weights.size
-    return Mixture((1 - _SPREAD) * best.weights + even, best.means)
+    shares = (1 - _SPREAD) * best.weights + even
+    parameters = scores.shape[1]
+    reach = float(np.sqrt((best.weights[:, None] * best.means**2).sum() / parameters))
+    return Mixture(
+        np.append((1 - _ALL_ROUND) * shares, _ALL_ROUND),
+        np.concatenate([best.means, np.zeros((1, parameters))]),
+        np.append(best.widths, max(reach, _LEAST_REACH)),
+    )
 
 
 def _of_size(size: int, scores: Floats, weights: Floats, rng: np.random.Generator) -> Mixture:
@@ -232,14 +243,15 @@ def _of_size(size: int, scores: Floats, weights: Floats, rng: np.random.Generato
         chance = distance * weights
         starts.append(int(rng.choice(weights.size, p=chance / chance.sum())))
         distance = np.minimum(distance, ((scores - scores[starts[-1]]) ** 2).sum(axis=1))
-    mixture = Mixture(np.full(size, 1 / size), scores[starts])
+    widths = np.full(size, WIDTH)
+    mixture = Mixture(np.full(size, 1 / size), scores[starts], widths)
     for _ in range(_ITERATIONS if size > 1 else 1):
         logarithms = mixture.components(scores)
         shares = np.exp(logarithms - scipy.special.logsumexp(logarithms, axis=0)) * weights
         sums = shares.sum(axis=1) + 1e-300
         # einsum, not a product of matrices: the same bits for any number of threads
         means = np.einsum("kn,nd->kd", shares, scores) / sums[:, None]
-        mixture = Mixture(np.maximum(sums / sums.sum(), 1e-12), means)
+        mixture = Mixture(np.maximum(sums / sums.sum(), 1e-12), means, widths)
     return mixture
 
 
