@@ -7,8 +7,8 @@ from .api.definition import Study as Study
 from .api.experiment import calibrate as calibrate
 from .api.experiment import compare as compare
 from .api.experiment import compare_studies as compare_studies
-from .api.laws import register as register
 from .api.experiment import rare_event as rare_event
+from .api.laws import register as register
 from .methods.delta import Delta as Delta
 from .methods.distributions import Choice as Choice
 from .methods.distributions import Lognormal as Lognormal
