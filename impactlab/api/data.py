@@ -87,6 +87,12 @@ def runs_of_table(
             f"{title}: {rows} rows are too few for {fewest[0].name}: give {fewest[0].fewest} or "
             "more"
         )
+    for record in records:
+        if record.most and len(parameters) > record.most:
+            raise ValueError(
+                f"{title}: {len(parameters)} inputs are too many for {record.name}: give at most "
+                f"{record.most}"
+            )
     order = np.random.default_rng(seed).permutation(rows)
     columns = {
         name: ("run", *_column(name, values, records, order)) for name, values in parameters.items()
@@ -114,6 +120,7 @@ def _records(indices: str | Sequence[str]) -> list[Indices]:
         for kind in SAMPLES.values()
         if issubclass(kind, Hypercube)
         for record in kind.records
+        if not record.of_limits
     ]
     names = [indices] if isinstance(indices, str) else list(indices)
     if not names:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, partial
 from typing import Annotated, Any, ClassVar, Self
 
@@ -20,6 +20,7 @@ from pydantic import (
     model_validator,
 )
 
+from impactlab.methods import frozen
 from impactlab.methods.distributions import CHOICE, DISTRIBUTIONS, ENTRIES, Choice, Entry, Fixed
 from impactlab.methods.record import Indices
 from impactlab.methods.runs import Sample
@@ -180,6 +181,13 @@ class RandomSample(Sampling):
         dict
             Keys and values of the section.
         """
+        entries: Any = self.parameters
+        if isinstance(entries, Mapping) and any(map(frozen.is_frozen, entries.values())):
+            entries = {
+                name: frozen.distribution(name, item) if frozen.is_frozen(item) else item
+                for name, item in entries.items()
+            }
+            return replace(self, parameters=entries).stated()
         section = super().stated()
         parameters = section.pop("parameters")
         if isinstance(parameters, Mapping):

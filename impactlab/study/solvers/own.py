@@ -55,6 +55,9 @@ class Function:
     version : str, optional
         Stored answers of another version are not reused; by default a hash of the code and of all
         that it uses.
+    vectorized : bool, default False
+        Whether a model takes many runs at once: arrays, (runs,), of its parameters, and returns
+        arrays as long. The runs of a call are those of a batch, in any number.
 
     Examples
     --------
@@ -67,6 +70,7 @@ class Function:
     units: str | Mapping[str, str] | None = None
     long_name: str = ""
     version: str | None = None
+    vectorized: bool = False
 
     def unit(self, response: str) -> str:
         """Return the stated unit of a response.
@@ -125,7 +129,8 @@ def register(name: str, function: Function | Callable[..., Any]) -> str:
         cloudpickle.dumps(function.call)
     except Exception as error:  # whatever its content raises
         raise ValueError(f"cannot be sent to workers ({error})") from None
-    digest = sha256(f"{version} {function.units}".encode()).hexdigest()[:16]
+    kind = " vectorized" * function.vectorized
+    digest = sha256(f"{version} {function.units}{kind}".encode()).hexdigest()[:16]
     KNOWN[f"{name}@{digest}"] = function
     return f"{name}@{digest}"
 
@@ -318,24 +323,51 @@ def _points(task: Task, design: xr.Dataset, runs: Array) -> Array:
 
 def _model(task: Task, cases: Array, output: OutputSpec) -> Columns:
     """Return the answers of the model, one row per case: a number, or a mapping of numbers."""
+    if task.functions[""].vectorized:
+        return _vectorized(task, cases)
     columns: Columns = {name: np.empty(cases.size) for name in task.responses}
     units: dict[str, list[str]] = {name: [] for name in task.unit_columns}
     for row, case in enumerate(cases):
         values = {name: case[name].item() for name in task.parameters}
         answer = _number(task.functions[""], "function", **values)
-        if not isinstance(answer, Mapping):
-            answer = {task.responses[0]: answer}
-        if set(answer) != set(task.responses):
-            names, responses = ", ".join(map(str, answer)), ", ".join(task.responses)
-            raise ValueError(
-                f"function: gave {names}, but `responses` of the study are {responses}"
-            )
+        answer = _by_response(task, answer)
         for name in task.responses:
             columns[name][row] = _real(answer[name], f"function: {name}")
             if _UNIT + name in units:
                 units[_UNIT + name].append(_unit(answer[name], f"function: {name}"))
     columns |= {name: np.array(column, _UNITS) for name, column in units.items()}
     return columns | {"status": np.zeros(cases.size, dtype=np.int32)}
+
+
+def _by_response(task: Task, answer: Any) -> Mapping[str, Any]:
+    """Return what a model gave by response. Raises ValueError where names differ."""
+    answers: Mapping[str, Any] = {task.responses[0]: answer}
+    if isinstance(answer, Mapping):
+        answers = answer
+    if set(answers) != set(task.responses):
+        names, responses = ", ".join(map(str, answers)), ", ".join(task.responses)
+        raise ValueError(f"function: gave {names}, but `responses` of the study are {responses}")
+    return answers
+
+
+def _vectorized(task: Task, cases: Array) -> Columns:
+    """Return the answers of a model that takes many cases at once: arrays of as many."""
+    values = {name: cases[name].copy() for name in task.parameters}
+    answer = _by_response(task, _number(task.functions[""], "function", **values))
+    columns: Columns = {"status": np.zeros(cases.size, dtype=np.int32)}
+    for name in task.responses:
+        column = np.asarray(answer[name])
+        if column.dtype.kind not in "iufb" or column.shape != (cases.size,):
+            raise ValueError(
+                f"function: {name}: gave {column.dtype} of shape {column.shape} for {cases.size} "
+                "runs: a vectorized function returns one number for each"
+            )
+        columns[name] = column.astype(float)
+        if _UNIT + name in task.unit_columns:
+            is_array = isinstance(answer[name], xr.DataArray)
+            unit = _unit(answer[name], f"function: {name}") if is_array else "1"
+            columns[_UNIT + name] = np.full(cases.size, unit, _UNITS)
+    return columns
 
 
 def _labelled_model(task: Task, design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:

@@ -1,0 +1,58 @@
+"""Frozen distributions of SciPy as those of this package."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from impactlab.methods.distributions import (
+    Distribution,
+    Lognormal,
+    LogUniform,
+    Normal,
+    Triangular,
+    TruncatedNormal,
+    Uniform,
+)
+
+FAMILIES = ("uniform", "loguniform", "reciprocal", "norm", "truncnorm", "lognorm", "triang")
+"""Families of scipy.stats that have a counterpart."""
+
+
+def is_frozen(entry: Any) -> bool:
+    """Return whether this is a frozen distribution of SciPy."""
+    return hasattr(entry, "dist") and hasattr(entry, "ppf")
+
+
+def distribution(name: str, frozen: Any) -> Distribution:
+    """Return the counterpart of a frozen distribution, in SI units; name: of the parameter.
+
+    Raises ValueError for a family without one, and for a lognormal distribution that is moved.
+    """
+    family = frozen.dist.name
+    if family not in FAMILIES:
+        raise ValueError(
+            f"parameters.{name} is SciPy's {family}, which has no counterpart here: choose from "
+            f"{', '.join(FAMILIES)}, or use il.runs_of_table with a sample of your own"
+        )
+    shapes, place, scale = frozen.dist._parse_args(*frozen.args, **frozen.kwds)
+    place, scale = float(place), float(scale)
+    low, high = map(float, frozen.support())
+    match family:
+        case "uniform":
+            return Uniform(low, high)
+        case "loguniform" | "reciprocal":
+            return LogUniform(low, high)
+        case "norm":
+            return Normal(mean=place, standard_deviation=scale)
+        case "truncnorm":
+            return TruncatedNormal(mean=place, standard_deviation=scale, low=low, high=high)
+        case "triang":
+            return Triangular(low=low, mode=place + float(shapes[0]) * scale, high=high)
+    if place != 0.0:
+        raise ValueError(
+            f"parameters.{name} is SciPy's lognorm with loc = {place:g}: only loc = 0 has a "
+            "counterpart here"
+        )
+    return Lognormal(median=scale, geometric_standard_deviation=float(np.exp(shapes[0])))
