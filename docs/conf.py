@@ -19,7 +19,13 @@ author = "impactlab developers"
 copyright = "impactlab developers, BSD-3-Clause"
 version = release = metadata.version("impactlab")
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_design"]
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx_copybutton",
+    "sphinx_design",
+]
 exclude_patterns = ["gallery/_*.md"]  # parts of other pages
 suppress_warnings = ["mystnb.unknown_mime_type"]  # of widgets, which have a plain form, too
 default_role = "py:obj"  # names of docstrings become links, all else is set as code

@@ -38,7 +38,7 @@ What the runs say
     table           runs or indices as a pandas DataFrame
     plot            figures: plot.run, plot.response, plot.sobol, plot.animate, ...
     load_surrogate  predictions without solving
-    Multifidelity   statistics of a slow model by runs of a fast one
+    Multifidelity   statistics of a slow model by runs of a fast one, each a FidelityEstimate
     compare         measurements beside the runs, with verdicts
     compare_studies studies beside each other, on one page
     calibrate       parameters and contact laws from measurements

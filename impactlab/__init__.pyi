@@ -1,5 +1,6 @@
 from . import plot as plot
 from .analysis.analyse import analyse as analyse
+from .analysis.multifidelity import FidelityEstimate as FidelityEstimate
 from .analysis.multifidelity import Multifidelity as Multifidelity
 from .analysis.surrogate import load_surrogate as load_surrogate
 from .api.data import runs_of_table as runs_of_table

@@ -26,14 +26,29 @@ FEWEST_PAIRS = 20
 """Pairs below which no estimate is given."""
 FEWEST_EVENTS = 3
 """Pairs beyond a limit, and short of it, below which no probability is given."""
+EXPECTED_EVENTS = 6
+"""The same, of those that the probability lets expect: fewer bias it by up to a third."""
 
 
 @dataclass(frozen=True)
 class FidelityEstimate:
-    """One statistic of the slow model.
+    """A statistic of the slow model, with its interval.
 
-    value, standard_error: in the unit of the statistic. interval: lower and upper end.
-    plain_error: the standard error of the same number of slow runs alone.
+    Parameters
+    ----------
+    value : float
+        Estimate, in the unit of the statistic.
+    standard_error : float
+        Standard error, in the same unit.
+    interval : tuple of float
+        Lower and upper end of the interval.
+    plain_error : float
+        Standard error that the slow runs alone give.
+
+    Examples
+    --------
+    >>> il.FidelityEstimate(12.0, 0.5, (11.0, 13.0), plain_error=1.0).saving
+    4.0
     """
 
     value: float
@@ -43,7 +58,13 @@ class FidelityEstimate:
 
     @property
     def saving(self) -> float:
-        """Plain slow runs per slow run for the same standard error: above 1, runs are saved."""
+        """Plain slow runs per slow run for the same standard error: above 1, runs are saved.
+
+        Returns
+        -------
+        float
+            Ratio of the variances.
+        """
         return (self.plain_error / self.standard_error) ** 2
 
 
@@ -69,9 +90,11 @@ class Multifidelity:
     Notes
     -----
     Over 400 repetitions of 40 pairs of Ishigami's function and a copy of correlation 0.5, 0.9 and
-    0.99, intervals of 95 % hold the mean in 94.5 to 95.5 %, a probability of 0.45 in 93 to 95.5 %
-    and one of 0.16 in 94 to 98 %. Draws have to be independent, as those of `Sobol` and `Latin` are
-    not.
+    0.99, none of which the rules were chosen on, intervals of 95 % hold the mean in 95 to 97 %, a
+    probability of 0.45 in 95 to 97 %, and one of 0.31 in 96 to 98 %. At 0.20, where 8 pairs are
+    expected beyond the limit, up to a fifth of the samples are refused; those that are not give
+    3 to 14 % too much, and intervals hold in 96 to 98 %. Draws have to be independent, as those of
+    `Sobol` and `Latin` are not.
 
     Examples
     --------
@@ -158,9 +181,6 @@ class Multifidelity:
     def exceedance(self, limit: float) -> FidelityEstimate:
         """Return the probability that the slow model exceeds the limit, interval even in its logit.
 
-        It is a little too large, by 3 % at a probability of 0.16 from 40 pairs, because samples
-        with hardly a run beyond the limit are refused.
-
         Parameters
         ----------
         limit : float
@@ -174,7 +194,8 @@ class Multifidelity:
         Raises
         ------
         ValueError
-            If fewer than three of the pairs are on one side of the limit.
+            If fewer than three of the pairs are on one side of the limit, or the probability is so
+            near 0 or 1 that fewer than six are expected there.
         """
         if not np.isfinite(limit):
             raise ValueError(f"Multifidelity.exceedance: limit = {limit}: must be a number")
@@ -191,12 +212,20 @@ class Multifidelity:
                 return np.asarray(line > limit, dtype=float)
             return np.asarray(scipy.special.ndtr((line - limit) / spread))
 
-        return self._estimate(
+        estimate = self._estimate(
             lambda y: np.asarray(y > limit, dtype=float),
             expectation,
             scipy.special.logit,
             scipy.special.expit,
         )
+        # by runs of low above all, so that it hardly selects among samples
+        expected = min(estimate.value, 1.0 - estimate.value) * self.high.size
+        if expected < EXPECTED_EVENTS:
+            raise ValueError(
+                f"Multifidelity.exceedance: limit = {limit:g}: {expected:.1f} of {self.high.size} "
+                f"runs of high are expected on one side: at least {EXPECTED_EVENTS}: add runs"
+            )
+        return estimate
 
     def _estimate(
         self,
@@ -259,7 +288,7 @@ def _interval(
 ) -> tuple[float, float]:
     """Return an interval that is even on a scale, by the derivative of the scale at the value."""
     if not scale:
-        return value - margin, value + margin
+        return float(value - margin), float(value + margin)
     forward, backward = scale
     with np.errstate(invalid="ignore", divide="ignore"):
         low, centre, high = forward(value * np.array([1 - 1e-6, 1, 1 + 1e-6]))

@@ -38,6 +38,7 @@ _HEAVY = 0.1
 _SAFETY = 1.1  # on standard errors: those of skewed weights are up to 9 % too small
 _DISAGREEING = 3.0  # standard errors between both estimates
 _RAY = 33  # runs that confirm a design point
+_AROUND, _AS_NEAR = 0.5, 1.03  # cosine of the angle to the nearest run; length over its length
 Runs = Callable[[Floats], Floats]
 
 
@@ -157,13 +158,12 @@ def estimate(
     log_ratio, outputs = density.log_ratio(scores), solve(scores)
     runs += size
     return _judged(
-        density, scores, log_ratio, outputs, limit, (first, first_error), runs, levels,
+        scores, log_ratio, outputs, limit, (first, first_error), runs, levels,
         (solve, ray, target, confidence),
     )  # fmt: skip
 
 
 def _judged(
-    density: Mixture,
     scores: Floats,
     log_ratio: Floats,
     outputs: Floats,
@@ -194,7 +194,7 @@ def _judged(
         RareEventVerdict.MISSING: bool(gaps.any()),
     }
     verdict = next((kind for kind, held in holds.items() if held), RareEventVerdict.USABLE)
-    point = _design_point(density, scores[above], log_ratio[above], limit, solve, ray)
+    point = _design_point(scores[above], log_ratio[above], limit, solve, ray)
     return Estimate(
         verdict, runs + ray, levels, answered, low, high, value, most_of, check[0],
         variation, int(gaps.sum()), outputs.size, point,
@@ -256,19 +256,18 @@ def _of_size(size: int, scores: Floats, weights: Floats, rng: np.random.Generato
     return mixture
 
 
-def _design_point(
-    density: Mixture, scores: Floats, log_ratio: Floats, limit: float, solve: Runs, ray: int
-) -> Floats:
+def _design_point(scores: Floats, log_ratio: Floats, limit: float, solve: Runs, ray: int) -> Floats:
     """Return the run beyond the limit that is nearest to the middle of all scores.
 
-    scores, log_ratio: of runs beyond. Runs along the mean of those of the likeliest component lie
-    among the candidates: single runs are off by chance in parameters that do not matter.
+    scores, log_ratio: of runs beyond. Single runs are off by chance in parameters that do not
+    matter: a run towards the mean of those around the nearest one is taken where it is as near.
     """
-    weights = np.exp(log_ratio - log_ratio.max())
-    component = density.components(scores).argmax(axis=0)
-    heaviest = np.bincount(component, weights).argmax()
-    part = weights * (component == heaviest)
-    middle = (part[:, None] * scores).sum(axis=0) / part.sum()
-    along = np.linspace(0.5, 1.25, ray)[:, None] * middle
-    beyond = np.concatenate([along[solve(along) > limit], scores])
-    return np.asarray(beyond[(beyond**2).sum(axis=1).argmin()])
+    lengths = np.sqrt((scores**2).sum(axis=1))
+    nearest = scores[lengths.argmin()]
+    around = (scores * nearest).sum(axis=1) >= _AROUND * lengths * lengths.min()
+    weights = np.exp(log_ratio - log_ratio.max()) * around
+    middle = (weights[:, None] * scores).sum(axis=0) / weights.sum()
+    along = np.linspace(0.7, 1.1, ray)[:, None] * middle
+    beyond = along[solve(along) > limit]
+    length = np.sqrt((beyond**2).sum(axis=1)).min(initial=np.inf)
+    return np.asarray(beyond[0] if length <= _AS_NEAR * lengths.min() else nearest)

@@ -35,7 +35,7 @@ def simulate(
             "if not the base's."
         ),
     ] = None,
-    nodes: Annotated[int, typer.Option(help="Nodes along the span, odd.")] = 601,
+    nodes: Annotated[int, typer.Option(help="Nodes along the span, odd.")] = 201,
     points: Annotated[int, typer.Option(help="Integration points over the depth.")] = 9,
     rule: Annotated[str, typer.Option(help="lobatto, legendre or layers.")] = "lobatto",
     scheme: Annotated[

@@ -1,6 +1,7 @@
 """One run on the command line, and what a command loads."""
 
 import dataclasses
+import inspect
 
 import pytest
 import xarray as xr
@@ -8,6 +9,7 @@ from command_line import called, succeeded
 from command_line import done as impactlab
 
 import impactlab as il
+from impactlab.cli.simulate import simulate
 
 
 def test_simulate_takes_a_scheme(tmp_path):
@@ -18,6 +20,12 @@ def test_simulate_takes_a_scheme(tmp_path):
     assert leapfrog != modal
     assert "11.75 kN" in leapfrog
     assert "11.76 kN" in modal  # 11.760 kN in the limit of many nodes
+
+
+def test_defaults_are_those_of_python():
+    entries = inspect.signature(simulate).parameters
+    grid = il.Discretisation()
+    assert (entries["nodes"].default, entries["points"].default) == (grid.nodes, grid.points)
 
 
 def loaded(*args, cwd):
