@@ -324,6 +324,7 @@ def attributes(name: str) -> dict[str, Any]:
 
 OWN = "origin"
 """Attribute of `contact` and `beam_flow_law` on laws from outside the package: source hashes."""
+_TEXTS = ("title", "source", "holds_for", "flaws", "unconfirmed", OWN)
 
 
 def law_texts(contact: xr.DataArray, name: str) -> dict[str, str]:
@@ -331,11 +332,10 @@ def law_texts(contact: xr.DataArray, name: str) -> dict[str, str]:
 
     contact: the variable. Who reads a report need not have a law from outside.
     """
-    keys = ("title", "source", "holds_for", "flaws", "unconfirmed", OWN)
     if f"{name}: " not in contact.attrs.get(OWN, "") and name in CONTACT_LAWS:
-        return {key: getattr(CONTACT_LAWS[name], key, "") for key in keys}
-    texts = dict.fromkeys(keys, "")
-    for key in keys:
+        return {key: getattr(CONTACT_LAWS[name], key, "") for key in _TEXTS}
+    texts = dict.fromkeys(_TEXTS, "")
+    for key in _TEXTS:
         for line in contact.attrs.get(key, "").splitlines():
             if line.startswith(f"{name}: "):
                 texts[key] = line.partition(": ")[2]
@@ -353,13 +353,12 @@ def described(dataset: xr.Dataset) -> xr.Dataset:
             variable.attrs = attributes(str(name)) | variable.attrs
     if "contact" in dataset.variables:
         laws = [CONTACT_LAWS[name] for name in np.unique(dataset["contact"].values)]
-        for key in ("title", "source", "holds_for", "flaws", "unconfirmed", OWN):
-            if key == "title" and not LAW_NAMES.outside([law.name for law in laws]):
-                continue
+        own = LAW_NAMES.outside([law.name for law in laws])
+        for key in _TEXTS if own else _TEXTS[1:]:
             dataset["contact"].attrs |= _lines(key, laws)
     if "beam_flow_law" in dataset.variables:
         own = FLOW_LAW_NAMES.outside(dataset["beam_flow_law"].values)
-        for key in ("title", "source", "holds_for", OWN):
+        for key in _TEXTS:
             dataset["beam_flow_law"].attrs |= _lines(key, own)
     return dataset
 

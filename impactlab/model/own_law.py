@@ -1,4 +1,4 @@
-"""What laws from outside the package share: functions that numba compiles, a hash, a register."""
+"""Common parts of laws from outside the package: compiled functions, a hash, a register."""
 
 from __future__ import annotations
 

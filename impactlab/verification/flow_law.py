@@ -1,4 +1,4 @@
-"""What speaks against a flow law from outside, and its numbers for steel."""
+"""Checks of a flow law from outside, and its numbers for steel."""
 
 from __future__ import annotations
 

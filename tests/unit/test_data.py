@@ -9,7 +9,7 @@ ROWS = 256
 
 
 def _table(rng):
-    """Return two normal inputs with the correlation 0.6, and a line over them."""
+    """Return two normal inputs, correlated by 0.6, and a line over them."""
     covariance = np.array([[1.0, 0.6], [0.6, 1.0]])
     normal = rng.multivariate_normal([0, 0], covariance, ROWS)
     return {"a": normal[:, 0], "b": normal[:, 1]}, {"y": normal @ [1.0, 0.5]}

@@ -116,7 +116,7 @@ def read_discretisation(data: Any, info: ValidationInfo) -> tuple[Discretisation
 
 
 def _given_values(section: FileSection, root: str) -> dict[str, Any]:
-    """Return the values in a section by parameter."""
+    """Return a section's values by parameter."""
     tree = {root: section.model_dump(exclude_unset=True)}
     values = {}
     for name, entry in PARAMETERS.items():

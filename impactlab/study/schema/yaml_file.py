@@ -178,7 +178,7 @@ class Constructor(SafeConstructor):
     """A constructor of plain values whose errors name the place in the text."""
 
     def construct_object(self, node: Any, deep: bool = False) -> Any:
-        """Return the value of a node. Raises MarkedYAMLError where it has none."""
+        """Return a node's value. Raises MarkedYAMLError where it has none."""
         try:
             return super().construct_object(node, deep)
         except (MarkedYAMLError, RecursionError):

@@ -97,7 +97,7 @@ def test_intervals_cover_the_known_effects(name, runs):
 
 
 def test_a_study_of_correlated_parameters_divides_the_variance(tmp_path):
-    """Of a sum of normal parameters, solved, analysed and answered; too many are refused."""
+    """A sum of normal parameters is solved, analysed and answered; too many are refused."""
     normal = il.Normal(mean=0.0, standard_deviation=1.0)
 
     def study(names, **sampling):
