@@ -14,7 +14,7 @@ noise. Target indices (Marrel and Chabridon 2021) are those of whether the limit
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -134,8 +134,14 @@ def _centred(kernel: Floats) -> Floats:
     return np.asarray(kernel - means - means[:, np.newaxis] + means.mean())
 
 
-def _judge(name: str) -> Callable[[Mapping[str, Floats]], list[SensitivityVerdict]]:
-    return lambda indices: wide(indices[f"{name}_interval"])
+def _judge(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
+    return wide(indices["hsic_interval"])
+
+
+def _judge_target(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
+    if np.isnan(indices["target_hsic"]).all():
+        return [SensitivityVerdict.NO_LIMIT]
+    return wide(indices["target_hsic_interval"])
 
 
 INDICES = Indices(
@@ -144,7 +150,7 @@ INDICES = Indices(
     _family("hsic", " of the response"),
     Sample.ungrouped,
     _estimate,
-    _judge("hsic"),
+    _judge,
     fewest=64,
 )
 TARGET = Indices(
@@ -153,7 +159,7 @@ TARGET = Indices(
     _family("target_hsic", " of whether the limit is exceeded"),
     Sample.ungrouped,
     _estimate_target,
-    _judge("target_hsic"),
+    _judge_target,
     fewest=64,
     of_limits=True,
 )

@@ -59,6 +59,10 @@ class SensitivityVerdict(Verdict):
         "a class of a parameter's values holds one value of the response alone: it has no density, "
         "and no delta is given (use pawn)",
     )
+    NO_LIMIT = (
+        False,
+        "the response has no limit, or all runs lie on one side of it: no target index is given",
+    )
     CONSTANT = False, "the response does not vary: indices are undefined"
     SEVERAL_REGIMES = (
         False,

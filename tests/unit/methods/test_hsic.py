@@ -7,6 +7,7 @@ import xarray as xr
 import impactlab as il
 from impactlab.methods import hsic
 from impactlab.methods.runs import Sample
+from impactlab.methods.verdict import SensitivityVerdict
 
 
 def sample_of(inputs, seed, **attributes):
@@ -83,3 +84,12 @@ def test_target_indices_are_those_of_the_limit(tmp_path):
     assert indices.target_hsic_p_value.sel(parameter="a") < 0.01
     with pytest.raises(il.StudyError, match="limits: are needed by target_hsic"):
         study()
+
+
+@pytest.mark.parametrize("limited", [{"z": 0.0}, {"y": 9.0}])
+def test_a_response_without_runs_beyond_a_limit_has_no_target_index(limited):
+    inputs = np.random.default_rng(1).uniform(size=(64, 2))
+    sample = sample_of(inputs, 1, limited=list(limited), limits=list(limited.values()))
+    indices = hsic.TARGET.estimate(inputs[:, 0], sample, "y")
+    assert np.isnan(indices["target_hsic"]).all()
+    assert hsic.TARGET.judge(indices) == [SensitivityVerdict.NO_LIMIT]
