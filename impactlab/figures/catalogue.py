@@ -18,7 +18,7 @@ from impactlab.figures import (
     strikes,
 )
 from impactlab.figures.record import LEAD, Figure
-from impactlab.methods import FAMILIES
+from impactlab.methods import FAMILIES, indices_of
 from impactlab.variables import of_function
 
 ANSWERS = (
@@ -114,7 +114,8 @@ def applicable(runs: xr.Dataset, analysis: xr.Dataset) -> dict[str, Figure]:
     beyond = [distributions.exceedance(name) for name in limits(runs) if name in runs]
     everything = (*of_wings, *beyond, *answers, *scatters, *INDICES)
     figures = {figure.name: figure for figure in everything if figure.applies(runs, analysis)}
-    first = next((figures[name] for name in _LEADING if name in figures), None)
+    ranking = [record.family.figure for record in indices_of(runs.attrs)]  # that of the answer
+    first = next((figures[name] for name in (*ranking, *_LEADING) if name in figures), None)
     lead = [_lead(runs, analysis, first)] if first else []
     if strikes.strike_series.name in figures:  # what the headline is about
         lead = [strikes.accumulated_dent]

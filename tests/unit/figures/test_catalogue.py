@@ -18,6 +18,7 @@ from impactlab.figures import data, style
 from impactlab.figures.catalogue import CATALOGUE, LEAD, applicable
 from impactlab.figures.distributions import exceedance
 from impactlab.figures.samples import scatter
+from impactlab.methods import INDICES
 from impactlab.solver.outputs import SERIES
 from impactlab.variables import RESPONSES, described
 
@@ -288,6 +289,17 @@ def test_one_panel_of_the_headlines_response_leads(velocity_study, sample_study)
     runs.attrs["title"] = "The peak plastic strain"  # whose indices are not usable
     analysis["sensitivity_verdict"].loc["peak_plastic_strain"] = 1
     assert applicable(runs, analysis)[LEAD].title == "Sobol indices: peak force"
+
+
+@pytest.mark.parametrize("names", [["hsic", "shapley"], ["shapley", "hsic"]])
+def test_the_figure_of_the_index_that_ranks_leads(sample_study, names):
+    runs, analysis = sample_study
+    for name in names:
+        analysis[name] = analysis["total_order"]
+        analysis[f"{name}_interval"] = analysis["total_order_interval"]
+    runs.attrs["indices"] = names
+    title = INDICES[names[0]].family.title
+    assert applicable(runs, analysis)[LEAD].title.startswith(title)
 
 
 def test_the_leading_panel_ranks_by_its_own_response(sample_study):
