@@ -328,7 +328,10 @@ def _readable(path: Path) -> Iterator[None]:
     try:
         yield
     except (OSError, ValueError, RuntimeError, LookupError, TypeError, AttributeError) as error:
-        raise OSError(f"{path}: cannot be read as netCDF ({error})") from None
+        reason = f"cannot be read as netCDF ({error})"
+        if path.suffix in (".yaml", ".yml"):
+            reason = f"is a study file: name its results, such as results/{path.stem}"
+        raise OSError(f"{path}: {reason}") from None
 
 
 def _digest(attrs: Mapping[Any, Any], variable: xr.Variable | None = None) -> str:

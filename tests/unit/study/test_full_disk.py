@@ -18,6 +18,9 @@ def test_unreadable_files_are_named(tmp_path):
     (tmp_path / "x.nc").write_text("no such thing")
     with pytest.raises(OSError, match=r"x\.nc: cannot be read as netCDF"):
         read_netcdf(tmp_path / "x.nc", "runs")
+    (tmp_path / "x.yaml").write_text("title: X")
+    with pytest.raises(OSError, match=r"x\.yaml: is a study file: name its results, such as"):
+        read_netcdf(tmp_path / "x.yaml", "runs")
 
 
 def test_a_failed_write_leaves_the_old_file_and_no_rubbish(tmp_path):
