@@ -277,7 +277,7 @@ def rare(
     ] = 0.1,
     workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
 ) -> None:
-    """Estimate how rarely a response exceeds its limit (1e-3 to 1e-7).
+    """Estimate the probability of a rare event.
 
     Draws samples that move towards the limit, solves them, and prints the probability and the
     likeliest way beyond the limit. Runs are kept in results/NAME/rare_event, and are not solved

@@ -35,7 +35,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import DAMPED_BEAM, OTHER_SECTION, Impact, paper_impact
 from impactlab.model.parameters import with_values
 from impactlab.solve import solve as solve_cases
-from impactlab.solver import BEAM_MODELS, DAMPINGS, SUPPORTS
+from impactlab.solver import BEAM_MODELS, DAMPINGS, FLOW_LAWS, SUPPORTS
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.solver.types import CASE
 from impactlab.study.shard import Array, Columns
@@ -101,6 +101,8 @@ def _refuse_beams(records: Array) -> None:
         raise ValueError(f"beam_model = {SOLID!r}: must be another one {OTHER_SECTION}")
     if any(records[name].any() for name in DAMPINGS):
         raise ValueError(f"beam_model = {SOLID!r}: must be {DAMPED_BEAM}")
+    if records["beam_flow_law"].any():
+        raise ValueError(f"beam_model = {SOLID!r}: hardens linearly: take beam_flow_law out")
     if np.any(records["strikes"] > 1) or records["further"].any():
         raise ValueError(f"beam_model = {SOLID!r}: has one strike by one sphere: change it")
 
@@ -115,6 +117,7 @@ def _impact_of(case: Any) -> Impact:
     values: dict[str, Any] = {name: case[name].item() for name in IMPACT_PARAMETERS}
     for name in ("support_left", "support_right"):
         values[name] = SUPPORTS[int(values[name])]
+    values["beam_flow_law"] = FLOW_LAWS[0]
     return with_values(paper_impact(), Discretisation(), values | {"beam_model": SOLID})[0]
 
 

@@ -11,7 +11,7 @@ from impactlab.fem3d.wing import SIZES
 from impactlab.model.case_table import case_table
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.parameters import PARAMETERS, SECTION, flatten, with_values
-from impactlab.solver import BEAM_MODELS, LOADS, RULES, SCHEMES
+from impactlab.solver import BEAM_MODELS, FLOW_LAWS, LOADS, RULES, SCHEMES
 from impactlab.solver.contact import LAWS
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
@@ -44,7 +44,7 @@ CONTRADICTING = (SIZES[1], "beam_rate_sensitivity", "strikes")
 TOGETHER = tuple(name for name in NAMES if name not in CONTRADICTING)
 WORDS = {"contact": LAWS, "beam_model": BEAM_MODELS[:2], "load": LOADS}
 WORDS |= {name: (word,) for name, word in TIMOSHENKO_OPTIONS.items()}
-WORDS |= {"rule": RULES, "scheme": SCHEMES}
+WORDS |= {"beam_flow_law": FLOW_LAWS, "rule": RULES, "scheme": SCHEMES}
 WORDS |= {"support_left": ("pinned",), "support_right": ("pinned",), "strike_position": (0.5,)}
 WORDS |= {"damping_ratio": (0.0,)}
 COUNTS = {"strikes": (1, 2, 91), "nodes": (5, 19, 1201), "points": (2, 3, 64)}

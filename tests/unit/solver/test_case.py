@@ -36,7 +36,7 @@ def test_a_record_has_every_value_in_its_place(make_case):
     names = {"contact": "hertz", "beam_model": "elastic", "rule": "layers"}
     names |= {"load": "contact_patch", "support_left": "clamped", "support_right": "free"}
     numbers = {
-        name: 0.5 + number / 100
+        name: 0.5 + number / 110
         for number, (name, entry) in enumerate(OF_KERNELS.items())
         if not entry.choices and not entry.is_integer and "poisson" not in name
         if name not in THICKNESSES and not entry.any_word
@@ -55,6 +55,7 @@ def test_a_record_has_every_value_in_its_place(make_case):
         "rule": RULES.index("layers"),
         "scheme": SCHEMES.index("leapfrog"),
         "beam_shape": SHAPES.index("rectangle"),
+        "beam_flow_law": 0,
         "support_left": SUPPORTS.index("clamped"),
         "support_right": SUPPORTS.index("free"),
     }
