@@ -36,8 +36,9 @@ def distribution(name: str, frozen: Any) -> Distribution:
             f"parameters.{name} is SciPy's {family}, which has no counterpart here: choose from "
             f"{', '.join(FAMILIES)}, or use il.runs_of_table with a sample of your own"
         )
-    shapes, place, scale = frozen.dist._parse_args(*frozen.args, **frozen.kwds)
-    place, scale = float(place), float(scale)
+    names = [*filter(None, (frozen.dist.shapes or "").split(", ")), "loc", "scale"]
+    stated = dict(zip(names, frozen.args, strict=False)) | frozen.kwds
+    place, scale = float(stated.get("loc", 0.0)), float(stated.get("scale", 1.0))
     low, high = map(float, frozen.support())
     match family:
         case "uniform":
@@ -49,10 +50,10 @@ def distribution(name: str, frozen: Any) -> Distribution:
         case "truncnorm":
             return TruncatedNormal(mean=place, standard_deviation=scale, low=low, high=high)
         case "triang":
-            return Triangular(low=low, mode=place + float(shapes[0]) * scale, high=high)
+            return Triangular(low=low, mode=place + float(stated["c"]) * scale, high=high)
     if place != 0.0:
         raise ValueError(
             f"parameters.{name} is SciPy's lognorm with loc = {place:g}: only loc = 0 has a "
             "counterpart here"
         )
-    return Lognormal(median=scale, geometric_standard_deviation=float(np.exp(shapes[0])))
+    return Lognormal(median=scale, geometric_standard_deviation=float(np.exp(stated["s"])))
