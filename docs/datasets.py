@@ -133,7 +133,9 @@ def _sample(study: partial[il.Study]) -> il.Study:
 def _ishigami(study: partial[il.Study], kind: type[RandomSample]) -> xr.Dataset:
     parameters = {name: il.Uniform("-3.14", "3.14") for name in ("x1", "x2", "x3")}
     sample = kind(parameters=parameters, **SIZES.get(kind.name(), {"samples": 128}))
-    return study(title=kind.label, function="ishigami", sampling=sample).run(workers=1)
+    limits = {"value": 10.0} if any(record.of_limits for record in kind.records) else {}
+    declared = study(title=kind.label, function="ishigami", sampling=sample, limits=limits)
+    return declared.run(workers=1)
 
 
 def _posterior(study: partial[il.Study]) -> xr.Dataset:

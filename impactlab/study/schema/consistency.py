@@ -140,7 +140,8 @@ def limit_reasons(file: StudyFile | FunctionStudy) -> Reasons:
     method = file.sampling.method
     for indices in getattr(file.sampling, "estimates", ()):
         if indices.of_limits and not file.limits:
-            yield "limits", f"are needed by {indices.name}: state that of a response"
+            key = "indices" if method == "latin" else "method"
+            yield f"sampling.{key}", f"{indices.name} needs `limits`: state that of a response"
     if file.limits and (reason := NO_DISTRIBUTION.get(method)):
         methods = "sobol or a Latin hypercube (latin, delta, hsic, ...)"
         yield "limits", f"give no probabilities with method {method}: {reason} (use {methods})"
