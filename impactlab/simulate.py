@@ -14,7 +14,7 @@ from impactlab.model.case_table import NO_INTERVAL, case_table
 from impactlab.model.checks import instance, integer, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
-from impactlab.model.parameters import PARAMETERS, fixed_values, flatten
+from impactlab.model.parameters import LAW_PARAMETERS, PARAMETERS, fixed_values, flatten
 from impactlab.model.plausibility import (
     ImplausibleWarning,
     TooShortWarning,
@@ -147,11 +147,14 @@ def run_dataset(
     variables = answer_variables(answers, tuple(RESPONSES), ())
     fixed = flatten(impact, grid) | {"sphere_mass": impact.sphere.total_mass, "duration": duration}
     fixed["shear_coefficient"] = impact.beam.shear_correction
+    laws = {name: str(fixed[name]) for name in LAW_PARAMETERS}
+    own = (law for name, word in laws.items() for law in LAW_PARAMETERS[name].outside([word]))
     blank = _blank_run(
         tuple(variables),
         tuple((name, values.tobytes()) for name, values in axes.items()),
         tuple(fixed),
-        impact.contact,
+        tuple(laws.items()),
+        tuple(law.source_hash for law in own),
     )
     dataset = blank.copy()
     dataset.attrs = provenance()
@@ -166,12 +169,14 @@ def _blank_run(
     answers: tuple[str, ...],
     axes: tuple[tuple[str, bytes], ...],
     fixed: tuple[str, ...],
-    contact: str,
+    laws: tuple[tuple[str, str], ...],
+    hashes: tuple[str, ...],
 ) -> xr.Dataset:
     """Return the dataset of a run before its numbers are in: a copy is sooner made than another.
 
     answers, fixed: names of data variables and of scalar coordinates. axes: by name, float64 as
-    bytes, which tell one axis from another and are read-only, since copies share them.
+    bytes, which tell one axis from another and are read-only, since copies share them. laws: of
+    contact and flow, whose texts are attributes. hashes: of the sources of those from outside.
     """
     import xarray as xr  # late, here and below: `solve` does without, and it is slow to load
 
@@ -181,7 +186,7 @@ def _blank_run(
         dims = VARIABLES[name].dims if name in VARIABLES else ()
         shape = tuple(points[dim].size for dim in dims)
         variables[name] = dims, np.broadcast_to(np.nan, shape)
-    scalars = dict.fromkeys(fixed, np.nan) | {"contact": contact}
+    scalars = dict.fromkeys(fixed, np.nan) | dict(laws)
     return described(xr.Dataset(variables, points | scalars))
 
 

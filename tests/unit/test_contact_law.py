@@ -59,6 +59,7 @@ def own(curve=hertz, name="own", **stated):
 
 def answers(contact):
     run = il.simulate(il.paper_impact(1.0, contact), GRID, duration=1e-3, samples=2)
+    assert run.contact.attrs.get("origin", "").endswith(getattr(contact, "source_hash", ""))
     return run.peak_force.item(), run.restitution.item()
 
 
