@@ -113,8 +113,6 @@ def indices(runs: xr.Dataset, parameters: list[str] | None = None) -> xr.Dataset
     put("total_order", 1.1 * lead + 0.01 + noise, 0.04)
     for name in ("delta", "delta_first_order", "pawn"):
         put(name, 0.5 * lead + 0.03 + np.abs(noise), 0.02)
-    for name in ("shapley", "hsic", "target_hsic"):
-        put(name, lead + noise, 0.02)
     data["pawn_maximum"] = (_PAIR, 0.8 * lead + 0.05)
     for name, sign in (("regression", -1.0), ("rank_regression", 1.0)):
         put(name, sign * np.sqrt(lead) + noise, 0.02)

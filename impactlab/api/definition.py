@@ -131,6 +131,8 @@ class Study(StudyFolder):
             for response, call in responses.items():
                 if not isinstance(call, str):
                     with _problems_at(f"responses.{response}"):
+                        if getattr(call, "vectorized", False):
+                            raise ValueError("is vectorized, which a model alone can be")
                         python[response] = register(response, call)
             responses = list(responses)
         if function is not None and not isinstance(function, str):

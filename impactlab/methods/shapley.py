@@ -37,7 +37,7 @@ from impactlab.types import Floats
 Mask = npt.NDArray[np.bool_]
 MOST = 10
 """Most parameters: subsets double with each."""
-SAFETY = 1.5  # bias over change; 0.7 would do for a bias that falls with the root of the runs
+SAFETY = 2.4  # bias over change, of a bias that falls with the root of the runs
 ROWS = 4  # runs for each term of the regression
 _APART = 1e3  # distance of words; scores lie within 10 of each other
 _SOURCE = (

@@ -11,11 +11,12 @@ import xarray as xr
 
 from impactlab.figures import access, labels
 from impactlab.figures.access import count, responses, usable
+from impactlab.law_texts import OWN, law_texts
 from impactlab.methods.distributions import CHOICE
 from impactlab.report.distribution import regime_doubt
 from impactlab.solver import FLOW_LAWS
 from impactlab.solver.contact import LAWS
-from impactlab.variables import MARKS, OUTSIDE_DATA, OWN, WARNINGS, law_texts, of_function
+from impactlab.variables import MARKS, OUTSIDE_DATA, WARNINGS, of_function
 
 _OF_THE_CONTACT = {"peak_force", "maximum_indentation", "permanent_indentation"}
 _ENERGY_LIMIT = 1e-3
@@ -116,7 +117,10 @@ def notes(runs: xr.Dataset) -> Iterator[str]:
             yield " ".join(filter(None, parts))
     for law in sorted(used["beam_flow_law"].difference(FLOW_LAWS)):
         origin = law_texts(runs["beam_flow_law"], law)[OWN]
-        yield f"Some runs use the flow law “{law}” for the beam's fibres. The law is {origin}."
+        yield (
+            f"Some runs use the flow law “{law}” for the beam's fibres. The law is {origin}. The "
+            "contact knows the yield stress alone: neither its hardening nor its rate."
+        )
     if "peak_plastic_strain" in runs:
         yield (
             "In a perfectly plastic section the peak plastic strain (PEEQ) under the sphere does "

@@ -119,6 +119,8 @@ def _dataset(
     gap = np.full(len(sampling.varied), np.nan)
     point = gap if result.design_point is None else result.design_point
     distance = float(np.sqrt((point**2).sum()))
+    if sampling.words:  # no plane lies along words
+        distance = np.nan
     numbers: dict[str, tuple[float, str, str]] = {
         "limit": (limit, units, f"limit of {response}"),
         "probability": (result.probability, "1", "probability that the response exceeds it"),

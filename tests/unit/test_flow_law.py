@@ -197,6 +197,7 @@ def test_designs_and_reports_name_the_law_and_its_hash():
     assert cases["beam_flow_law"].tolist() == [0, law.number]
     (note,) = [text for text in notes(design) if "“voce”" in text]
     assert f"source hash {law.source_hash}" in note
+    assert "contact knows the yield stress alone" in note
     del flow_law._NAMED["voce"]
     with pytest.raises(ValueError, match=r"flow law 'voce' of this design is .*does not know it"):
         kernels.cases(design, np.arange(2))

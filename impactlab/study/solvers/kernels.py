@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from impactlab.law_texts import OWN
 from impactlab.methods.runs import listed
 from impactlab.model.case_table import case_table
 from impactlab.model.contact_law import LAW_NAMES
@@ -30,7 +31,6 @@ from impactlab.variables import (
     BY_SPHERE,
     HISTORIES,
     OF_STRIKES,
-    OWN,
     PROFILES,
     RESPONSES,
     answer_variables,

@@ -49,6 +49,7 @@ def test_words_are_drawn_with_their_weights(tmp_path):
     exact = 0.1 * norm.sf(3) + 0.9 * norm.sf(5)
     assert rare.low < exact < rare.high
     assert "grade poor" in rare.answer
+    assert np.isnan(rare.first_order), "no plane lies along words"
 
 
 @pytest.mark.parametrize(

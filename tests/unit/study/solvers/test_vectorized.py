@@ -26,6 +26,18 @@ def test_a_table_at_once_gives_the_same_answers(tmp_path):
         np.testing.assert_array_equal(runs[0][name], runs[1][name])
 
 
+def test_responses_of_one_impact_are_refused():
+    force = il.Function(lambda run: run.peak_force, vectorized=True)
+    with pytest.raises(il.StudyError, match=r"responses\.force.*is vectorized"):
+        il.Study(
+            title="Force",
+            impact=il.paper_impact(),
+            duration="1 ms",
+            responses={"force": force},
+            sampling=il.Grid(parameters={"velocity": [1, 2]}),
+        )
+
+
 @pytest.mark.parametrize(
     ("function", "given"),
     [
