@@ -43,6 +43,7 @@ What the runs say
     compare_studies studies beside each other, on one page
     calibrate       parameters and contact laws from measurements
     rare_event      probabilities of 1e-3 to 1e-7, and the likeliest way there
+    size            the lightest design with a small probability
 
 Quantities are SI numbers, strings with a unit or quantities of pint. `help(il.Study)` and so on
 tell more, each with an example.

@@ -233,3 +233,94 @@ def rare_event(
     engine = local_engine(workers)
     settings = samples, runs, coefficient_of_variation
     return probability(study.declared, study.folder, engine, *settings)
+
+
+def size(
+    study: Study,
+    variables: Sequence[str],
+    *,
+    probability: float,
+    minimise: str = "mass",
+    maximise: str = "",
+    samples: int = 500,
+    runs: int = 6000,
+    coefficient_of_variation: float = 0.1,
+    workers: int = CORES,
+) -> xr.Dataset:
+    """Choose the values of parameters so that a response seldom exceeds its limit.
+
+    Of all values of the design variables, of which the study states ranges, this finds the ones
+    with the lightest beam (or the least or greatest value of one of them) for which the probability
+    is small enough, confirms them by runs, and draws the best objective over the probability
+    (docs/sensitivity.md). The runs are kept in the study's folder: the same call resumes where it
+    stopped.
+
+    Parameters
+    ----------
+    study : Study
+        Sample of any method with one limit. The distributions of the design variables are
+        `Uniform` or `LogUniform`, and state their ranges.
+    variables : sequence of str
+        Names of the design variables, one to three.
+    probability : float
+        Largest probability wanted, from 1e-6 to 0.3.
+    minimise : str, default "mass"
+        Mass of the beam, or a design variable.
+    maximise : str, optional
+        Design variable that is to be large instead.
+    samples : int, default 500
+        Number of runs per level of each estimate of a probability, at least 200.
+    runs : int, default 6000
+        Largest number of runs of an estimate, at least 4 `samples`.
+    coefficient_of_variation : float, default 0.1
+        Standard error to reach over the probability, from 0.01 to 0.5.
+    workers : int, optional
+        Number of threads; by default that of the machine's cores.
+
+    Returns
+    -------
+    xarray.Dataset
+        The design variables, the `objective` and its interval on `bound`, the `probability` there,
+        the front, all designs tried, `verdict`; the attribute `answer` holds the findings in
+        sentences. The figure is results/NAME/sizing.svg and .png.
+
+    Raises
+    ------
+    StudyError
+        If the study has no sample, correlations, or not one limit.
+    ValueError
+        If a variable has no range, a setting is out of range, or another study has results of this
+        name.
+
+    References
+    ----------
+    Sacks, Welch, Mitchell and Wynn (1989), Stat. Sci. 4, 409 (recalled, not read).
+
+    Examples
+    --------
+    >>> study = il.Study(
+    ...     title="Rod", function=lambda load, strength, area: load / area - strength,
+    ...     limits={"value": 0}, sampling=il.Pawn(samples=128, parameters={
+    ...         "load": il.Normal(5, 1), "strength": il.Normal(6, 0.5), "area": il.Uniform(1, 3)}))
+    >>> design = il.size(study, ["area"], probability=1e-3, minimise="area", workers=1)
+    >>> exact = 1.477  # its probability is 1e-3
+    >>> bool(exact <= design.area[0] < 1.03 * exact)
+    True
+    """
+    from impactlab.report.sizing import draw_sizing
+    from impactlab.study.sizing import sizing
+
+    result = sizing(
+        study.declared,
+        study.folder,
+        local_engine(workers),
+        list(variables),
+        probability,
+        minimise=minimise,
+        maximise=maximise,
+        samples=samples,
+        runs=runs,
+        target=coefficient_of_variation,
+    )
+    draw_sizing(result, study.folder)
+    return result

@@ -29,6 +29,7 @@ _COMMANDS = {
     "predict": "impactlab.cli.results:predict",
     "calibrate": "impactlab.cli.results:calibrate",
     "rare": "impactlab.cli.results:rare",
+    "size": "impactlab.cli.results:size",
     "verify": "impactlab.cli.solve:verify",
     "figures": "impactlab.cli.results:figures",
     "animate": "impactlab.cli.results:animate",

@@ -294,6 +294,58 @@ def rare(
     print(rare_event(declared, folder, engine, samples, runs, variation).attrs["answer"])
 
 
+def size(
+    study: StudyFile,
+    variables: Annotated[
+        list[str], typer.Argument(metavar="PARAMETER...", help="Design variables, one to three.")
+    ],
+    probability: Annotated[float, typer.Option(help="Largest probability wanted.")],
+    minimise: Annotated[
+        str, typer.Option(metavar="mass|PARAMETER", help="Mass of the beam, or a design variable.")
+    ] = "mass",
+    maximise: Annotated[
+        str, typer.Option(metavar="PARAMETER", help="Design variable that is to be large instead.")
+    ] = "",
+    samples: Annotated[int, typer.Option(help="Runs per level of an estimate.")] = 500,
+    runs: Annotated[int, typer.Option(help="Largest number of runs of an estimate.")] = 6000,
+    variation: Annotated[
+        float, typer.Option(help="Coefficient of variation of a probability to reach.")
+    ] = 0.1,
+    workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
+) -> None:
+    """Find the lightest design with a small probability.
+
+    Design variables have the distribution uniform in the study, which states their ranges; the
+    other parameters scatter. Prints the values for which the response exceeds its limit with at
+    most the probability wanted, confirmed by runs, and draws the front (results/NAME/sizing.png).
+    Runs are kept in results/NAME/sizing, and are not solved again.
+    """
+    stop_solving()
+    from impactlab.report.sizing import draw_sizing
+    from impactlab.study import steps
+    from impactlab.study.engine import Engine
+    from impactlab.study.schema.readers import read_study
+    from impactlab.study.sizing import sizing
+
+    declared = read_study(study)
+    folder, engine = steps.results_folder(declared.name), Engine("threads", workers)
+    result = sizing(
+        declared,
+        folder,
+        engine,
+        variables,
+        probability,
+        minimise=minimise,
+        maximise=maximise,
+        samples=samples,
+        runs=runs,
+        target=variation,
+    )
+    print(result.attrs["answer"])
+    for path in draw_sizing(result, folder):
+        print(path)
+
+
 def animate(
     stored: Annotated[
         Path,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +32,94 @@ _FEWEST = 200  # runs per level
 _MATTERS = 0.5  # standard deviations from which on the answer names a parameter
 
 
+@dataclass
+class LimitRuns:
+    """Runs of a study's solver at standard normal scores, and the response that has a limit.
+
+    declared: the study, with a discretisation. first: its first run, as a design. folder: of the
+    runs, which are not solved again. units: of the response, known after the first runs.
+    """
+
+    declared: AnyStudy
+    sampling: RandomSample
+    first: xr.Dataset
+    response: str
+    limit: float
+    folder: Path
+    engine: Engine
+    units: str = ""
+
+    @classmethod
+    def of(cls, study: AnyStudy, folder: Path, engine: Engine, kind: str) -> LimitRuns:
+        """Return the runs of a study, kept in `folder`/`kind`.
+
+        Raises StudyError for a study without a sample or with other than one limit, ValueError
+        where another study has results in `folder`.
+        """
+        sampling = study.sampling
+        if not isinstance(sampling, RandomSample):
+            reason = "a rare event needs distributions: use any method but grid"
+            raise StudyError(Problem(str(study.path), "sampling.method", reason))
+        if isinstance(sampling, Hypercube) and sampling.correlations:
+            reason = "are not known to the search for a rare event: take them out"
+            raise StudyError(Problem(str(study.path), "sampling.correlations", reason))
+        if len(study.limits) != 1:
+            reason = (
+                f"state {len(study.limits)} limits, and a rare event has one: state one response"
+            )
+            raise StudyError(Problem(str(study.path), "limits", reason))
+        check_unclaimed(study, folder / "runs.nc")
+        ((response, limit),) = study.limits.items()
+        declared = steps.resolved(study, folder, engine) or study
+        first = design(declared, 0, 1).assign_attrs(histories=0, profiles=0)
+        return cls(declared, sampling, first, response, limit, folder / kind, engine)
+
+    def outputs(self, scores: Floats) -> Floats:
+        """Return the response at standard normal scores (runs, parameter), NaN where missing."""
+        runs = self.first.isel(run=np.zeros(len(scores), int))
+        columns = {
+            name: ("run", column, self.first[name].attrs)
+            for name, column in self.values(scores).items()
+        }
+        numbers = ("run", np.arange(len(scores)), self.first["run"].attrs)
+        solved = execute(runs.assign_coords({"run": numbers} | columns), self.folder, self.engine)
+        self.units = str(solved[self.response].attrs.get("units", "1"))
+        return np.asarray(usable(solved, self.response).values[0])
+
+    def values(self, scores: Floats) -> dict[str, np.ndarray]:
+        """Return the values, or words, of each varied parameter at scores (runs, parameter)."""
+        return {
+            name: entry.quantile(scipy.special.ndtr(column))
+            if isinstance(entry, Choice)
+            else entry.at_scores(column)
+            for (name, entry), column in zip(self.sampling.varied.items(), scores.T, strict=True)
+        }
+
+    def long_name(self, parameter: str) -> str:
+        """Return the name of a parameter in words."""
+        attrs = self.first[parameter].attrs
+        return str(attrs.get("long_name", parameter.replace("_", " ")))
+
+    def stated(self, parameter: str, value: float) -> str:
+        """Return a value of a parameter with its unit."""
+        return engineering(float(value), str(self.first[parameter].attrs.get("units", "1")))
+
+    @property
+    def event(self) -> str:
+        """The event in words: the response exceeds its limit."""
+        limit = engineering(self.limit, self.units)
+        return f"{self.response.replace('_', ' ')} exceeds {limit}"
+
+
+def check_estimate(owner: str, samples: int, runs: int, target: float) -> tuple[int, int]:
+    """Return runs per level and of an estimate. Raises ValueError for settings out of range."""
+    samples = integer(owner, "samples", samples, _FEWEST)
+    if not 0.01 <= target <= 0.5:
+        message = "must be from 0.01 to 0.5"
+        raise ValueError(f"{owner}: coefficient_of_variation = {target!r}: {message}")
+    return samples, integer(owner, "runs", runs, 4 * samples)
+
+
 def rare_event(
     study: AnyStudy, folder: Path, engine: Engine, samples: int, runs: int, target: float
 ) -> xr.Dataset:
@@ -38,91 +127,38 @@ def rare_event(
 
     folder: of the study's results. Runs are kept in `folder`/rare_event and are not solved again.
 
-    Raises StudyError for a study without a sample or with other than one limit, ValueError for
-    settings out of range and where another study has results in `folder`.
+    Raises as LimitRuns.of, and ValueError for settings out of range.
     """
-    sampling = study.sampling
-    if not isinstance(sampling, RandomSample):
-        reason = "a rare event needs distributions: use any method but grid"
-        raise StudyError(Problem(str(study.path), "sampling.method", reason))
-    if isinstance(sampling, Hypercube) and sampling.correlations:
-        reason = "are not known to the search for a rare event: take them out"
-        raise StudyError(Problem(str(study.path), "sampling.correlations", reason))
-    if len(study.limits) != 1:
-        reason = f"state {len(study.limits)} limits, and a rare event has one: state one response"
-        raise StudyError(Problem(str(study.path), "limits", reason))
-    samples = integer("rare_event", "samples", samples, _FEWEST)
-    runs = integer("rare_event", "runs", runs, 4 * samples)
-    if not 0.01 <= target <= 0.5:
-        message = "must be from 0.01 to 0.5"
-        raise ValueError(f"rare_event: coefficient_of_variation = {target!r}: {message}")
-    check_unclaimed(study, folder / "runs.nc")
-    ((response, limit),) = study.limits.items()
-    declared = steps.resolved(study, folder, engine) or study
-    first = design(declared, 0, 1).assign_attrs(histories=0, profiles=0)
-    units = ""
-
-    def solve(scores: Floats) -> Floats:
-        nonlocal units
-        solved = execute(_at_scores(first, sampling, scores), folder / RARE_EVENT, engine)
-        units = str(solved[response].attrs.get("units", "1"))
-        return np.asarray(usable(solved, response).values[0])
-
+    samples, runs = check_estimate("rare_event", samples, runs, target)
+    solver = LimitRuns.of(study, folder, engine, RARE_EVENT)
     result = estimated(
-        solve,
-        len(sampling.varied),
-        limit,
-        seed=sampling.seed,
+        solver.outputs,
+        len(solver.sampling.varied),
+        solver.limit,
+        seed=solver.sampling.seed,
         samples=samples,
         most=runs,
         target=target,
         confidence=study.analysis.confidence,
     )
-    return _dataset(result, first, sampling, response, limit, units).assign_attrs(
+    return _dataset(result, solver).assign_attrs(
         study.attributes() | provenance(),
         confidence=study.analysis.confidence,
         target=target,
-        answer=_answer(result, first, sampling, response, engineering(limit, units), study),
+        answer=_answer(result, solver),
     )
 
 
-def _at_scores(first: xr.Dataset, sampling: RandomSample, scores: Floats) -> xr.Dataset:
-    """Return the design whose runs lie at standard normal scores, (runs, parameter)."""
-    runs = first.isel(run=np.zeros(len(scores), int))
-    columns = {
-        name: ("run", column, first[name].attrs)
-        for name, column in _values(sampling, scores).items()
-    }
-    numbers = ("run", np.arange(len(scores)), first["run"].attrs)
-    return runs.assign_coords({"run": numbers} | columns)
-
-
-def _values(sampling: RandomSample, scores: Floats) -> dict[str, np.ndarray]:
-    """Return the values, or words, of each varied parameter at scores (runs, parameter)."""
-    return {
-        name: entry.quantile(scipy.special.ndtr(column))
-        if isinstance(entry, Choice)
-        else entry.at_scores(column)
-        for (name, entry), column in zip(sampling.varied.items(), scores.T, strict=True)
-    }
-
-
-def _dataset(
-    result: Estimate,
-    first: xr.Dataset,
-    sampling: RandomSample,
-    response: str,
-    limit: float,
-    units: str,
-) -> xr.Dataset:
+def _dataset(result: Estimate, solver: LimitRuns) -> xr.Dataset:
     """Return the numbers of an estimate with names and units."""
+    sampling, units = solver.sampling, solver.units
     gap = np.full(len(sampling.varied), np.nan)
     point = gap if result.design_point is None else result.design_point
     distance = float(np.sqrt((point**2).sum()))
     if sampling.words:  # no plane lies along words
         distance = np.nan
     numbers: dict[str, tuple[float, str, str]] = {
-        "limit": (limit, units, f"limit of {response}"),
+        "limit": (solver.limit, units, f"limit of {solver.response}"),
         "probability": (result.probability, "1", "probability that the response exceeds it"),
         "low": (result.low, "1", "lower end of its interval, if no missing run exceeds the limit"),
         "high": (result.high, "1", "upper end of its interval, if every missing run does"),
@@ -160,33 +196,26 @@ def _dataset(
     ).assign(verdict=flagged(code, RareEventVerdict, "verdict on the probability"))
 
 
-def _answer(
-    result: Estimate,
-    first: xr.Dataset,
-    sampling: RandomSample,
-    response: str,
-    limit: str,
-    study: AnyStudy,
-) -> str:
+def _answer(result: Estimate, solver: LimitRuns) -> str:
     """Return the findings in sentences: the probability first."""
-    subject = f"{response.replace('_', ' ')} exceeds {limit}"
+    varied, study = solver.sampling.varied, solver.declared
     if result.design_point is None:
-        return f"No probability that the {subject}: {result.verdict.meaning} ({result.runs:,} runs)"
+        meaning = result.verdict.meaning
+        return f"No probability that the {solver.event}: {meaning} ({result.runs:,} runs)"
     text = (
-        f"The {subject} with probability {result.probability:.2g} ({result.low:.2g} to "
+        f"The {solver.event} with probability {result.probability:.2g} ({result.low:.2g} to "
         f"{result.high:.2g}, {100 * study.analysis.confidence:g} % interval; coefficient of "
         f"variation {result.coefficient_of_variation:.2g}; {result.runs:,} runs)."
     )
     if result.verdict is not RareEventVerdict.USABLE:
         text += f" Caution: {result.verdict.meaning}."
     places = []
-    point = dict(zip(sampling.varied, result.design_point.tolist(), strict=True))
-    values = _values(sampling, result.design_point[np.newaxis])
+    point = dict(zip(varied, result.design_point.tolist(), strict=True))
+    values = solver.values(result.design_point[np.newaxis])
     for name, score in sorted(point.items(), key=lambda item: -abs(item[1])):
-        long_name = str(first[name].attrs.get("long_name", name.replace("_", " ")))
-        if isinstance(sampling.varied[name], Choice):
-            places.append(f"{long_name} {values[name][0]}")
+        if isinstance(varied[name], Choice):
+            places.append(f"{solver.long_name(name)} {values[name][0]}")
         elif abs(score) >= _MATTERS:
-            value = engineering(float(values[name][0]), str(first[name].attrs.get("units", "1")))
-            places.append(f"{long_name} {score:+.1f} sd ({value})".replace("-", "−"))
+            value = solver.stated(name, values[name][0])
+            places.append(f"{solver.long_name(name)} {score:+.1f} sd ({value})".replace("-", "−"))
     return f"{text} The likeliest way to exceed it: {', '.join(places)}."

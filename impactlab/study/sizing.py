@@ -1,0 +1,231 @@
+"""The best design of a study whose probability of exceeding a limit is small enough."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy  # its special is loaded when first used
+import xarray as xr
+
+from impactlab.analysis.sizing import MOST_VARIABLES, Index, Sizing, SizingVerdict, size
+from impactlab.methods.distributions import LogUniform, Uniform
+from impactlab.model.checks import column
+from impactlab.model.parameters import with_values
+from impactlab.model.quantities import engineering
+from impactlab.provenance import provenance
+from impactlab.study import SIZING
+from impactlab.study.engine import Engine
+from impactlab.study.rare_event import LimitRuns, check_estimate
+from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
+from impactlab.types import Floats
+from impactlab.validation.errors import unknown
+from impactlab.verdicts import flagged
+
+MASS = "mass"
+"""Name of the objective that is no parameter: the mass of the beam."""
+_LEAST, _MOST = 1e-6, 0.3  # probabilities
+
+
+def sizing(
+    study: AnyStudy,
+    folder: Path,
+    engine: Engine,
+    variables: Sequence[str],
+    probability: float,
+    *,
+    minimise: str = MASS,
+    maximise: str = "",
+    samples: int = 500,
+    runs: int = 6000,
+    target: float = 0.1,
+) -> xr.Dataset:
+    """Return the best design of a study; see il.size.
+
+    folder: of the study's results. Runs are kept in `folder`/sizing and are not solved again.
+
+    Raises as LimitRuns.of, and ValueError for variables and settings that are out of range.
+    """
+    samples, runs = check_estimate("size", samples, runs, target)
+    if not _LEAST <= probability <= _MOST:
+        message = f"must be from {_LEAST:g} to {_MOST:g}"
+        raise ValueError(f"size: probability = {probability!r}: {message}")
+    solver = LimitRuns.of(study, folder, engine, SIZING)
+    _check_variables(solver, variables)
+    objective, name = _objective(solver, variables, minimise, maximise)
+    varied = [*solver.sampling.varied]
+    columns = [varied.index(variable) for variable in variables]
+    others = [index for index in range(len(varied)) if index not in columns]
+
+    def solve(designs: Floats, scores: Floats) -> Floats:
+        points = np.empty((len(designs), len(varied)))
+        points[:, columns] = scipy.special.ndtri(designs)
+        points[:, others] = scores
+        return solver.outputs(points)
+
+    result = size(
+        solve,
+        objective,
+        len(variables),
+        len(others),
+        solver.limit,
+        probability,
+        seed=solver.sampling.seed,
+        samples=samples,
+        runs=runs,
+        target=target,
+        confidence=study.analysis.confidence,
+    )
+    sign = -1.0 if maximise else 1.0
+    return _dataset(result, solver, variables, sign, name).assign_attrs(
+        study.attributes() | provenance(),
+        confidence=study.analysis.confidence,
+        target=target,
+        wanted=probability,
+        objective=name,
+        answer=_answer(result, solver, variables, sign, name, probability),
+    )
+
+
+def _check_variables(solver: LimitRuns, variables: Sequence[str]) -> None:
+    """Raise ValueError for design variables without a range, too many, or all parameters."""
+    varied = solver.sampling.varied
+    for variable in variables:
+        if variable not in varied:
+            raise ValueError(f"size: variables: {unknown('parameter', variable, varied)}")
+        if not isinstance(varied[variable], Uniform | LogUniform):
+            raise ValueError(
+                f"size: variables: {variable} has no range: give it the distribution uniform, from "
+                "the least to the greatest value that you could choose"
+            )
+    if len(set(variables)) != len(variables) or not 1 <= len(variables) <= MOST_VARIABLES:
+        raise ValueError(f"size: variables: must be 1 to {MOST_VARIABLES} different parameters")
+    if len(variables) == len(varied):
+        raise ValueError("size: variables: no parameter is left that scatters")
+
+
+def _objective(
+    solver: LimitRuns, variables: Sequence[str], minimise: str, maximise: str
+) -> tuple[Index, str]:
+    """Return what is to be small, from designs in the unit cube, and its name."""
+    varied, study, name = solver.sampling.varied, solver.declared, maximise or minimise
+
+    def values(designs: Floats) -> dict[str, Floats]:
+        return {
+            variable: varied[variable].quantile(column)
+            for variable, column in zip(variables, designs.T, strict=True)
+        }
+
+    if name in variables:
+        sign = -1.0 if maximise else 1.0
+        return lambda designs: sign * values(designs)[name], name
+    if maximise or name != MASS or not isinstance(study, ImpactStudy):
+        mass = [MASS] if isinstance(study, ImpactStudy) and not maximise else []
+        key = "maximise" if maximise else "minimise"
+        raise ValueError(f"size: {key}: {unknown('objective', name, [*mass, *variables])}")
+
+    def mass_of_beam(designs: Floats) -> Floats:
+        columns = {variable: column(row) for variable, row in values(designs).items()}
+        stated: dict[str, Any] = {**solver.sampling.fixed, **columns}
+        beam = with_values(study.impact, study.discretisation, stated)[0].beam
+        return np.broadcast_to(np.asarray(beam.mass_per_length * beam.span), len(designs))
+
+    ends = np.array([np.zeros(len(variables)), np.ones(len(variables))])
+    if np.ptp(mass_of_beam(ends)) == 0.0:
+        raise ValueError(
+            f"size: minimise: the mass of the beam does not depend on {', '.join(variables)}: "
+            "state which of them to minimise or to maximise"
+        )
+    return mass_of_beam, name
+
+
+def _dataset(
+    result: Sizing,
+    solver: LimitRuns,
+    variables: Sequence[str],
+    sign: float,
+    name: str,
+) -> xr.Dataset:
+    """Return the numbers of a design with names and units."""
+    estimates, front = result.estimates, result.front
+    label, units = _label(solver, name)
+    probability = {"units": "1", "long_name": f"probability that the {solver.event}"}
+    best = {"units": units, "long_name": label}
+    data: dict[str, Any] = {
+        variable: (
+            ("bound",),
+            solver.sampling.varied[variable].quantile(result.designs[:, index]),
+            solver.first[variable].attrs,
+        )
+        for index, variable in enumerate(variables)
+    }
+    numbers = [result.probability.probability, result.probability.low, result.probability.high]
+    data["probability"] = (("bound",), numbers, probability)
+    data["objective"] = (("bound",), sign * result.objectives, best)
+    data["tried_objective"] = (("estimate",), sign * result.tried, best)
+    for key in ("probability", "low", "high"):
+        tried = [getattr(estimate, key) for estimate in estimates]
+        long_name = {"low": "lower end of its interval", "high": "upper end of its interval"}
+        attrs = probability | ({"long_name": long_name[key]} if key in long_name else {})
+        data[f"tried_{key}"] = (("estimate",), tried, attrs)
+    data["front_objective"] = (("front", "bound"), sign * front[1:].T, best)
+    data["runs"] = ((), result.runs, {"units": "1", "long_name": "runs solved, in all"})
+    bounds = {"long_name": "estimate, and ends of its interval"}
+    coords = {
+        "bound": ("bound", ["estimate", "favourable", "unfavourable"], bounds),
+        "front": ("front", front[0], probability),
+    }
+    verdict = flagged(xr.DataArray(int(result.verdict)), SizingVerdict, "verdict on the design")
+    return xr.Dataset(data, coords).assign(verdict=verdict)
+
+
+def _label(solver: LimitRuns, name: str) -> tuple[str, str]:
+    """Return the objective in words, and its unit."""
+    if name in solver.sampling.varied:
+        return solver.long_name(name), str(solver.first[name].attrs.get("units", "1"))
+    return "mass of the beam", "kg"
+
+
+def _answer(
+    result: Sizing,
+    solver: LimitRuns,
+    variables: Sequence[str],
+    sign: float,
+    name: str,
+    wanted: float,
+) -> str:
+    """Return the findings in sentences: the design first."""
+    estimate, confidence = result.probability, 100 * solver.declared.analysis.confidence
+    label, units = _label(solver, name)
+    event = f"the {solver.event}"
+    places = ", ".join(
+        f"{solver.long_name(variable)} "
+        f"{solver.stated(variable, solver.sampling.varied[variable].quantile(share))}"
+        for variable, share in zip(variables, result.designs[0], strict=True)
+    )
+    known = (
+        f"{estimate.probability:.2g} ({estimate.low:.2g} to {estimate.high:.2g}, {confidence:g} % "
+        f"interval)"
+    )
+    if result.verdict in (SizingVerdict.IMPOSSIBLE, SizingVerdict.NOT_CONVERGED):
+        return (
+            f"No design: {result.verdict.meaning}. The last one tried, {places}, has probability "
+            f"{known} that {event}; at most {wanted:g} is wanted ({result.runs:,} runs)."
+        )
+    kind = "least" if sign > 0 else "greatest"
+    ends = sign * result.objectives[1:]
+    low, high = sorted(engineering(float(end), units) for end in ends)
+    text = (
+        f"The design of {kind} {label} for which {event} with probability at most {wanted:g}: "
+        f"{places}. Runs there give {known}."
+    )
+    if np.isfinite(ends).all():
+        text += f" The {label} wanted lies from {low} to {high}."
+    if result.verdict is not SizingVerdict.USABLE:
+        meaning = result.verdict.meaning
+        if not estimate.verdict.sound:
+            meaning += f" ({estimate.verdict.meaning})"
+        text += f" Caution: {meaning}."
+    return f"{text} {result.runs:,} runs."

@@ -1,0 +1,128 @@
+"""Designs of studies: stored runs, workers, the front, refusals."""
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.stats import norm
+
+import impactlab as il
+from impactlab.study.sizing import sizing
+
+
+def stress_minus_strength(load, strength, area):
+    return load / area - strength
+
+
+PARAMETERS = {
+    "load": il.Normal(5, 1),
+    "strength": il.Normal(6, 0.5),
+    "area": il.Uniform(1, 3),
+}
+
+
+def study(folder, **changes):
+    arguments = {"function": stress_minus_strength, "limits": {"value": 0}} | changes
+    sampling = il.Pawn(samples=128, parameters=PARAMETERS)
+    return il.Study(title="Rod", results=folder, sampling=sampling, **arguments)
+
+
+def exact_area(wanted):
+    def excess(area):
+        return norm.logsf((6 - 5 / area) / np.hypot(1 / area, 0.5)) - np.log(wanted)
+
+    return brentq(excess, 1, 3)
+
+
+def test_the_least_area_is_found_with_the_same_bits_for_any_number_of_workers(tmp_path):
+    first = il.size(study(tmp_path / "one"), ["area"], probability=1e-3, minimise="area", workers=1)
+    other = il.size(study(tmp_path / "two"), ["area"], probability=1e-3, minimise="area", workers=2)
+    again = il.size(study(tmp_path / "one"), ["area"], probability=1e-3, minimise="area", workers=1)
+    for result in (other, again):
+        np.testing.assert_array_equal(first.area, result.area)
+        np.testing.assert_array_equal(first.front_objective, result.front_objective)
+    chosen, low, high = first.area.values
+    assert low <= exact_area(1e-3) <= high
+    assert exact_area(1e-3) <= chosen < 1.03 * exact_area(1e-3)
+    assert first.answer.startswith("The design of least area for which the value exceeds 0")
+    assert (tmp_path / "one" / "rod" / "sizing.png").exists()
+
+
+def test_the_greatest_load_is_the_one_with_the_probability(tmp_path):
+    ranges = PARAMETERS | {"load": il.Uniform(3, 9), "area": il.Normal(1.5, 0.05)}
+    declared = il.Study(
+        title="Rod", function=stress_minus_strength, limits={"value": 0}, results=tmp_path,
+        sampling=il.Pawn(samples=128, parameters=ranges),
+    )  # fmt: skip
+    result = il.size(declared, ["load"], probability=0.01, maximise="load", workers=1)
+    rng = np.random.default_rng(1)
+    strength, area = rng.normal(6, 0.5, 10**6), rng.normal(1.5, 0.05, 10**6)
+    exact = np.quantile(strength * area, 0.01)  # the load exceeds it with this probability
+    chosen, low, high = result["load"].values
+    assert 0.97 * exact < chosen <= 1.001 * exact
+    assert min(low, high) < 1.002 * exact
+    assert max(low, high) > 0.998 * exact
+    assert "design of greatest load" in result.answer
+
+
+@pytest.mark.parametrize(
+    ("variables", "settings", "reason"),
+    [
+        (["area"], {"probability": 0.5}, "probability = 0.5: must be from 1e-06 to 0.3"),
+        (["are"], {"probability": 0.01}, "did you mean 'area'"),
+        (["load"], {"probability": 0.01}, "load has no range: give it the distribution uniform"),
+        ([], {"probability": 0.01}, "must be 1 to 3 different parameters"),
+        (["area"], {"probability": 0.01}, "minimise"),
+        (["area"], {"probability": 0.01, "minimise": "load"}, "minimise"),
+        (["area"], {"probability": 0.01, "maximise": "mass"}, "maximise"),
+        (["area"], {"probability": 0.01, "minimise": "area", "samples": 9}, "samples"),
+    ],
+)
+def test_settings_that_are_wrong_are_refused(tmp_path, variables, settings, reason):
+    with pytest.raises(ValueError, match=reason):
+        il.size(study(tmp_path), variables, workers=1, **settings)
+
+
+def test_the_mass_is_that_of_the_beam(tmp_path):
+    """A brute-force search on a grid, with many more runs, finds no lighter beam."""
+    parameters = {
+        "beam_depth": il.Uniform("24 mm", "60 mm"),
+        "velocity": il.TruncatedNormal("10 m/s", "1 m/s", low="5 m/s", high="15 m/s"),
+    }
+    spheres = il.Study(
+        title="Depth",
+        impact=il.paper_impact("10 m/s"),
+        duration="3 ms",
+        responses=["maximum_deflection"],
+        discretisation=il.Discretisation(nodes=9, scheme="modal"),
+        limits={"maximum_deflection": "4 mm"},
+        sampling=il.Pawn(samples=128, parameters=parameters),
+        results=tmp_path,
+    )
+    result = il.size(spheres, ["beam_depth"], probability=0.05, workers=2)
+    depths = np.linspace(float(result.beam_depth[1]) * 0.98, float(result.beam_depth[2]), 8)
+    speeds = norm.ppf((np.arange(400) + 0.5) / 400, 10, 1)
+    grid = il.Study(
+        title="Grid",
+        impact=il.paper_impact("10 m/s"),
+        duration="3 ms",
+        responses=["maximum_deflection"],
+        discretisation=il.Discretisation(nodes=9, scheme="modal"),
+        sampling=il.Grid(parameters={"beam_depth": depths.tolist(), "velocity": speeds.tolist()}),
+        results=tmp_path,
+    )
+    above = (grid.run(workers=2).maximum_deflection > 4e-3).mean("velocity").values
+    enough = depths[np.argmax(above <= 0.05)]
+    np.testing.assert_allclose(result.beam_depth[0], enough, rtol=0.02)
+    beam = spheres.declared.impact.beam
+    np.testing.assert_allclose(
+        result.objective[0], beam.mass_per_length * beam.span * result.beam_depth[0] / beam.depth
+    )
+
+
+def test_studies_without_a_sample_are_refused(tmp_path):
+    grid = il.Grid(parameters={"load": [1, 2], "strength": [3], "area": [1.0]})
+    declared = il.Study(
+        title="Rod", function=stress_minus_strength, sampling=grid, results=tmp_path
+    )
+    with pytest.raises(il.StudyError, match="use any method but grid"):
+        sizing(declared.declared, declared.folder, None, ["area"], 0.01)
