@@ -105,12 +105,15 @@ stored: $(MADE)-docs
 site: docs $(MADE)-dev
 	$(IN_VENV) python -m pytest -m site $(PYTEST_ARGS)
 
-# The changelog last: until it has a date, what was built is for a trial.
-release: $(MADE)-dev $(MADE)-release
+# In an environment of its own, whose metadata may be newer than what .venv knows. The changelog last:
+# until it has a date, what was built is for a trial.
+release: $(MADE)-dev
 	$(IN_VENV) python -m pytest tests/unit/test_packaging.py $(PYTEST_ARGS)
 	rm -rf dist
-	$(IN_VENV) python -m build
-	$(IN_VENV) python -m twine check --strict dist/*
+	$(PYTHON) -m venv --clear build/release
+	build/release/bin/python -m pip --disable-pip-version-check install --quiet build 'twine>=7'
+	build/release/bin/python -m build
+	build/release/bin/python -m twine check --strict dist/*
 	@! grep '^## .*(unreleased)' CHANGELOG.md || { \
 	  echo 'CHANGELOG.md: give this version its date before you upload dist/.'; exit 1; }
 
