@@ -28,7 +28,7 @@ Its sampling
                                    from given data: a Latin hypercube
     Latin                          several of these four at once
     Uniform, LogUniform, Normal, TruncatedNormal, Lognormal, Triangular
-    Choice                         one of several words
+    Choice, Integers               one of several words, a whole number
 
 What the runs say
     analyse         convergence and sensitivity, with verdicts

@@ -13,6 +13,7 @@ from .api.laws import register as register
 from .fem3d.witness import witness as witness
 from .methods.delta import Delta as Delta
 from .methods.distributions import Choice as Choice
+from .methods.distributions import Integers as Integers
 from .methods.distributions import Lognormal as Lognormal
 from .methods.distributions import LogUniform as LogUniform
 from .methods.distributions import Normal as Normal
