@@ -11,6 +11,7 @@
 # make stored  answers and pictures of the gallery's large studies, in docs/stored: those without any
 #              that are current (a minute to half an hour each), or STORED='sobol_large witness'
 # make site    the same, then its pages, links and code blocks are tested
+# make release sdist and wheel in dist/, checked; nothing is uploaded or tagged
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
 #              its kernels, and what a second thread brings; both schemes' cost and error;
 #              how often the intervals of Sobol indices hold: wants an idle machine
@@ -42,7 +43,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete \
   --max-jobs-per-timespan 100/5s
 
-.PHONY: writable study paper all test lint pytest long chaos kratos oldest docs stored site bench scaling mutants coverage constraints unlock clean
+.PHONY: writable study paper all test lint pytest long chaos kratos oldest docs stored site release bench scaling mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 STOPPED := echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
@@ -103,6 +104,18 @@ stored: $(MADE)-docs
 
 site: docs $(MADE)-dev
 	$(IN_VENV) python -m pytest -m site $(PYTEST_ARGS)
+
+# In an environment of its own, whose metadata may be newer than what .venv knows. The changelog last:
+# until it has a date, what was built is for a trial.
+release: $(MADE)-dev
+	$(IN_VENV) python -m pytest tests/unit/test_packaging.py $(PYTEST_ARGS)
+	rm -rf dist
+	$(PYTHON) -m venv --clear build/release
+	build/release/bin/python -m pip --disable-pip-version-check install --quiet build 'twine>=7'
+	build/release/bin/python -m build
+	build/release/bin/python -m twine check --strict dist/*
+	@! grep '^## .*(unreleased)' CHANGELOG.md || { \
+	  echo 'CHANGELOG.md: give this version its date before you upload dist/.'; exit 1; }
 
 bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py

@@ -28,7 +28,7 @@ Its sampling
                                    from given data: a Latin hypercube
     Latin                          several of these four at once
     Uniform, LogUniform, Normal, TruncatedNormal, Lognormal, Triangular
-    Choice                         one of several words
+    Choice, Integers               one of several words, a whole number
 
 What the runs say
     analyse         convergence and sensitivity, with verdicts
@@ -41,6 +41,7 @@ What the runs say
     Multifidelity   statistics of a slow model by runs of a fast one, each a FidelityEstimate
     compare         measurements beside the runs, with verdicts
     compare_studies studies beside each other, on one page
+    witness         one impact in 3-D finite elements beside the beam models
     calibrate       parameters and contact laws from measurements
     rare_event      probabilities of 1e-3 to 1e-7, and the likeliest way there
     size            the lightest design with a small probability

@@ -11,8 +11,10 @@ from .api.experiment import compare_studies as compare_studies
 from .api.experiment import rare_event as rare_event
 from .api.experiment import size as size
 from .api.laws import register as register
+from .fem3d.witness import witness as witness
 from .methods.delta import Delta as Delta
 from .methods.distributions import Choice as Choice
+from .methods.distributions import Integers as Integers
 from .methods.distributions import Lognormal as Lognormal
 from .methods.distributions import LogUniform as LogUniform
 from .methods.distributions import Normal as Normal

@@ -69,7 +69,7 @@ def replaced(path: Path, size: int = 0) -> Iterator[Path]:
     unfinished = path.with_name(f".{path.name}.{uuid4().hex}")  # see unfinished_files
     try:
         yield unfinished
-        with unfinished.open("rb") as handle:
+        with unfinished.open("r+b") as handle:  # Windows syncs what may be written
             os.fsync(handle.fileno())
         unfinished.replace(path)
     except (OSError, RuntimeError) as error:  # HDF5 does not tell a full disk from others

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from os import cpu_count
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -228,6 +229,32 @@ class StudyFolder:
         analysis = self.analyse()
         with checked(self._runs(), "runs", blocks=True) as solved:
             return RUNS.draw(solved, analysis, self.folder / "figures")
+
+    def tables(self, to: str = "csv", *, responses: Sequence[str] = ()) -> list[Path]:
+        """Write tables of runs, indices and answers into folder/tables.
+
+        Parameters
+        ----------
+        to : str, default "csv"
+            Format: "csv", "xlsx", "parquet" or "latex".
+        responses : sequence of str, optional
+            Names of the responses; by default all that the study asks for.
+
+        Returns
+        -------
+        list of pathlib.Path
+            Files of the tables.
+
+        Raises
+        ------
+        ValueError
+            If there are no runs of this study yet, or the format or a response is unknown.
+        """
+        from impactlab.report.tables import export
+
+        analysis = self.analyse()
+        with opened(self._runs(), "runs") as runs:
+            return export(runs, analysis, self.folder / "tables", to, responses)
 
     def report(self, path: str | Path | None = None) -> Path:
         """Analyse, draw, and write the report, one file.

@@ -116,7 +116,7 @@ class RunPlan:
             reason = f"{time(long)}, {limit}, for {self.cost.steps:,} steps of {elements}"
         else:
             return ""
-        hint = "see --dry-run, and --force runs it all the same"
+        hint = "see --dry-run, and --force (Python: force=True) runs it all the same"
         return f"{self.case.file}: {option}: about {reason}; {hint}"
 
     def solved_mesh(self) -> Mesh:

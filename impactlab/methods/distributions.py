@@ -25,9 +25,9 @@ from pydantic import (
     model_validator,
 )
 
-from impactlab.model.quantities import Quantity, engineering
+from impactlab.model.quantities import Quantity, engineering, whole
 from impactlab.types import Floats
-from impactlab.validation.fields import LABEL, Number, at_key, quantity, requires, value_type
+from impactlab.validation.fields import LABEL, Number, Whole, at_key, quantity, requires, value_type
 from impactlab.validation.stated import Stated
 
 _NEGLIGIBLE = 1e-40  # share of the draws beyond either end of a quadrature
@@ -38,6 +38,11 @@ def _value(data: Any, info: ValidationInfo) -> Any:
     """Read a value that the parameter can take, in SI units."""
     kind = value_type(info.context["parameter"])  # type: ignore[index]
     return TypeAdapter(kind).validate_python(data)
+
+
+def _whole_value(data: Any, info: ValidationInfo) -> int:
+    """Read a whole number that the parameter can take, in SI units."""
+    return whole(_value(data, info))
 
 
 def _number(data: Any, info: ValidationInfo) -> float:
@@ -85,6 +90,8 @@ class Distribution(Entry):
 
     is_logarithmic: ClassVar[bool] = False
     """True where draws spread evenly, or normally, in their logarithm."""
+    is_discrete: ClassVar[bool] = False
+    """True where a value may be drawn more than once: no polynomials are fitted over it."""
 
     @abstractmethod
     def _frozen(self) -> Any:
@@ -308,6 +315,53 @@ class Triangular(Distribution):
     def _frozen(self) -> Any:
         base = self.high - self.low
         return scipy.stats.triang((self.mode - self.low) / base, self.low, base)
+
+
+@dataclass(frozen=True)
+class Integers(Distribution):
+    """Equal probability of the whole numbers from `low` to `high`, both among them.
+
+    For `Sobol`, whose indices allow for runs of equal value.
+
+    Parameters
+    ----------
+    low, high : int
+        Least and greatest number.
+    step : int, default 1
+        Distance of neighbouring numbers, which divides that of the ends: nodes are odd and have 2.
+
+    Examples
+    --------
+    >>> strikes, nodes = il.Integers(1, 20), il.Integers(21, 81, step=20)
+    """
+
+    low: Annotated[Quantity, PlainValidator(_whole_value)]
+    high: Annotated[Quantity, PlainValidator(_whole_value)]
+    step: Annotated[Whole, Field(ge=1)] = 1
+    is_discrete = True
+
+    @field_validator("step")
+    @classmethod
+    def _check_step(cls, step: int, info: ValidationInfo) -> int:
+        if {"low", "high"} <= info.data.keys() and (info.data["high"] - info.data["low"]) % step:
+            raise ValueError("does not lead from low to high in whole steps")
+        return step
+
+    def _frozen(self) -> Any:
+        """Return the distribution of the number of steps above `low`."""
+        return scipy.stats.randint(0, (self.high - self.low) // self.step + 1)
+
+    def quantile(self, probability: ArrayLike) -> Any:
+        """Return the whole numbers (same shape) below or at which a draw lies at least so often."""
+        return self.low + self.step * np.asarray(self._frozen().ppf(probability)).astype(np.int64)
+
+    def at_scores(self, scores: ArrayLike) -> Any:
+        """Return the whole numbers (same shape) at standard normal scores."""
+        return self.quantile(scipy.special.ndtr(scores))
+
+    def cumulative(self, values: ArrayLike) -> Floats:
+        """Return the probabilities (same shape) that a draw lies at or below these values."""
+        return np.asarray(self._frozen().cdf((np.asarray(values) - self.low) / self.step))
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,16 @@ from pydantic import (
 )
 
 from impactlab.methods import frozen
-from impactlab.methods.distributions import CHOICE, DISTRIBUTIONS, ENTRIES, Choice, Entry, Fixed
+from impactlab.methods.distributions import (
+    CHOICE,
+    DISTRIBUTIONS,
+    ENTRIES,
+    Choice,
+    Distribution,
+    Entry,
+    Fixed,
+    Integers,
+)
 from impactlab.methods.record import Indices
 from impactlab.methods.runs import Sample
 from impactlab.model.parameters import PROFILE_FIXED, SPHERES_FIXED, Parameter, Value
@@ -92,8 +101,16 @@ class Sampling(Stated):
         return [name for name, entry in self.parameters.items() if isinstance(entry, Choice)]
 
     @property
+    def discrete(self) -> list[str]:
+        """Names of the parameters that are drawn among whole numbers."""
+        entries = self.parameters.items()
+        return [n for n, entry in entries if isinstance(entry, Distribution) and entry.is_discrete]
+
+    @property
     def no_surrogate(self) -> str:
         """The reason why no surrogate is fitted to the runs; "" where one is."""
+        if self.discrete:
+            return "no surrogate is fitted over whole numbers"
         return "no surrogate is fitted over words, which have no order" if self.words else ""
 
     @property
@@ -147,14 +164,17 @@ class RandomSample(Sampling):
 
     seed: equal seeds give equal draws; 0 is a seed like any other. parameters: a distribution, a
     choice of words or one fixed value each. records: the indices that it has by itself. even: True
-    where draws spread more evenly than random ones. blocks: setting with the number of blocks of
-    runs that are near-copies of each other; "" where all runs are draws of their own.
+    where draws spread more evenly than random ones. allows_ties: True
+    where its indices hold although many runs share a value, as whole numbers do. blocks: setting
+    with the number of blocks of runs that are near-copies of each other; "" where all runs are
+    draws of their own.
 
     Raises ValueError for a choice of words where an index needs an order of the values.
     """
 
     records: ClassVar[tuple[Indices, ...]] = ()
     even: ClassVar[bool] = False
+    allows_ties: ClassVar[bool] = False
     blocks: ClassVar[str] = ""
     seed: Annotated[Whole, Field(ge=0, le=2**32 - 1)] = 1
 
@@ -207,10 +227,10 @@ class RandomSample(Sampling):
                 f"takes words: write {{distribution: choice, values: [{example}]}}, or "
                 "{distribution: fixed, value: ...}"
             )
-        if parameter.is_integer and kind != "fixed":
+        if parameter.is_integer and kind not in (Integers.name(), "fixed"):
             raise ValueError(
-                "is a whole number and cannot be sampled: vary it in a study with method: grid, "
-                "or write {distribution: fixed, value: ...}"
+                "is a whole number: write {distribution: integers, low: ..., high: ...}, or "
+                "{distribution: fixed, value: ...}, or vary it in a study with method: grid"
             )
         if kind == CHOICE and not (parameter.choices or parameter.any_word):
             raise at_key(
@@ -220,6 +240,13 @@ class RandomSample(Sampling):
         name = name_at("distribution", ENTRIES, data)
         context = {**(info.context or {}), "parameter": parameter}
         return ENTRIES[name].read(data, context)
+
+    @model_validator(mode="after")
+    def _check_discrete(self) -> Self:
+        if self.discrete and not self.allows_ties:
+            reason = "draws whole numbers, which method sobol alone does: take it, or a grid"
+            raise at_key(f"parameters.{self.discrete[0]}.distribution", reason)
+        return self
 
     @model_validator(mode="after")
     def _check_words(self) -> Self:

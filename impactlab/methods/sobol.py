@@ -207,6 +207,7 @@ class Sobol(Grouped):
     """
 
     records = (INDICES,)
+    allows_ties = True
     label = "Sobol sample"
     even = True
     blocks = "base_samples"

@@ -11,6 +11,8 @@ from impactlab.solver import BEAM_MODELS, SCHEMES, SUPPORTS
 
 A_SECOND = 3e8
 """Node-steps per second of one core; half of it or twice is possible."""
+ANY_RUN = 6000.0
+"""Cost of a run beside its `work`, in the same unit: about 20 µs."""
 _ELASTIC = SUPPORTS.index("elastic")
 _FIRST = np.array([[98.8, 237.7, 237.7], [237.7, 500.6, 12.36], [237.7, 12.36, 500.6]])
 """Lowest omega^2 over EI/(rho A L^4), of bending, by left and right end; pinned: by Rayleigh."""

@@ -105,7 +105,7 @@ def print_estimate(cost: Estimate, workers: int) -> None:
     case = f" ({', '.join(settings)})" if settings else ""
     lines = {
         "runs": f"{cost.runs:,}",
-        "cost": f"about {time(cost.seconds)} of one core, most of it by {cost.slow}",
+        "cost": f"about {time(cost.wall(1))} of one core, most of it by {cost.slow}",
         "wall": f"about {time(cost.wall(workers))} on {workers} workers",
         "memory": f"about {decimal(round(cost.memory))}",
         "disk": f"about {decimal(round(cost.disk))} of the "

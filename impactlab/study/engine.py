@@ -111,26 +111,39 @@ def _slurm(profile: Profile) -> Iterator[Client]:
 
 @contextmanager
 def _here(workers: int, *, processes: bool) -> Iterator[Client]:
-    # only the main process handles Ctrl-C: its workers start while the signal is blocked
+    try:
+        with _interrupts_held():
+            cluster = LocalCluster(
+                processes=processes,
+                n_workers=workers if processes else 1,
+                threads_per_worker=1 if processes else workers,
+                host="127.0.0.1" if processes else None,
+                dashboard_address=_LOOPBACK,
+                worker_dashboard_address=_LOOPBACK,
+                memory_limit=0,
+                silence_logs=logging.ERROR,
+            )
+    except RuntimeError as error:
+        raise OSError(f"the workers on this machine did not start: {error}") from error
+    with cluster, Client(cluster, set_as_default=False) as client:
+        yield client
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Hold Ctrl-C back while workers start: they inherit that, and only the main process stops.
+
+    Windows has no such mask.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
     resource_tracker.ensure_running()  # started later, it would unblock the signal
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        cluster = LocalCluster(
-            processes=processes,
-            n_workers=workers if processes else 1,
-            threads_per_worker=1 if processes else workers,
-            host="127.0.0.1" if processes else None,
-            dashboard_address=_LOOPBACK,
-            worker_dashboard_address=_LOOPBACK,
-            memory_limit=0,
-            silence_logs=logging.ERROR,
-        )
-    except RuntimeError as error:
-        raise OSError(f"the workers on this machine did not start: {error}") from error
+        yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-    with cluster, Client(cluster, set_as_default=False) as client:
-        yield client
 
 
 class Profile(FileSection):

@@ -15,7 +15,7 @@ from distributed.system import MEMORY_LIMIT
 from impactlab.methods.sampling import RandomSample
 from impactlab.methods.sobol import Sobol
 from impactlab.model.case_table import case_table
-from impactlab.model.cost import A_SECOND, memory, work
+from impactlab.model.cost import A_SECOND, ANY_RUN, memory, work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, Value, with_values
@@ -37,6 +37,9 @@ _PER_RUN = 60.0  # bytes per run in memory beside them: its key, place and cost
 _ON_DISK = 2  # copies of answers on disk: in shards and in runs.nc
 _PROGRAM = 4e8  # bytes of the program and its compiler
 _FUNCTION = 1e-6  # seconds per value of a test function
+_BEGINNING = 0.2  # seconds of any study beside its runs: workers and files
+_RUN, _STORED = 2e-6, 2e-7
+"""Seconds of the main process per run (its key and place), and per number that it stores."""
 _USUAL_RUNS, _USUAL_DURATION, _USUAL_SAMPLES = 10_000, 0.012, 1000
 _MOST = 4096  # runs of a cost sample
 _TAIL = 1e-3  # probability of either tail of a distribution that a cost sample leaves out
@@ -72,6 +75,9 @@ class Estimate:
         Values that are possible but improbable.
     auto : bool
         True while the discretisation is still to be found, and the default is used instead.
+    overhead : float
+        Time beside the runs, in which they are drawn, kept and written, in s; of one core, however
+        many there are.
     """
 
     file: str
@@ -86,9 +92,10 @@ class Estimate:
     large: str
     implausible: tuple[Problem, ...] = ()
     auto: bool = False
+    overhead: float = 0.0
 
     def wall(self, workers: int) -> float:
-        """Return the time on several cores: at least that of the largest run.
+        """Return the time on several cores: at least that of the largest run and the overhead.
 
         Parameters
         ----------
@@ -100,7 +107,7 @@ class Estimate:
         float
             Time, in s.
         """
-        return max(self.seconds / workers, self.largest)
+        return max(self.seconds / workers, self.largest) + self.overhead
 
     def exceeded(self) -> list[Problem]:
         """Return one problem per limit that the study exceeds, at the key that drives it.
@@ -145,7 +152,7 @@ def estimate(study: AnyStudy, folder: Path, workers: int) -> Estimate:
         stored, held, working = parameters + 2, parameters + 2, 0.0
         slow = large = "sampling"
     else:
-        model: Any = SimpleNamespace(table=case_table, work=work, memory=memory, usual=_usual)
+        model: Any = SimpleNamespace(table=case_table, work=_work, memory=memory, usual=_usual)
         for further in further_models(study):  # with the same functions
             model = further.part("costs")
         sample = _cost_sample(study)
@@ -183,6 +190,7 @@ def estimate(study: AnyStudy, folder: Path, workers: int) -> Estimate:
         large=large,
         implausible=tuple(doubted),
         auto=isinstance(study, ImpactStudy) and study.auto is not None,
+        overhead=_BEGINNING + runs * (_RUN + _STORED * stored),
     )
 
 
@@ -201,6 +209,11 @@ def _drivers(study: ImpactStudy, model: Any, case: Array, runs: int) -> list[str
         large[name] = float(case[name][0]) / getattr(Discretisation(), name)
     names = [max(gains, key=gains.__getitem__) for gains in (slow, large)]
     return [key_of(name, study.sampling) if name in PARAMETERS else name for name in names]
+
+
+def _work(cases: Array) -> Any:
+    """Return the estimated time per run of the kernels, all of it (see cost.work)."""
+    return work(cases) + ANY_RUN
 
 
 def _usual(case: Array, duration: float) -> Array:

@@ -1,5 +1,6 @@
 """The built site as a reader has it: links, what pages ask for, and code blocks that run."""
 
+import ast
 import re
 import shlex
 import shutil
@@ -177,6 +178,19 @@ CODE = [
 ]
 LEFT_OUT = re.compile(r"verify|calibrate|witness(?!.* --(dry-run|deck))|\.\.\.")
 """Commands of minutes, and those with an ellipsis."""
+
+
+def test_short_recipes_are_short():
+    page = (ROOT / "docs" / "howto.md").read_text(encoding="utf-8")
+    recipes = page.split("\n## Short recipes\n")[1].split("\n## ")[0]
+    blocks = {block: ast.parse(block).body for block in PYTHON.findall(recipes)}
+    assert blocks
+    imports = ast.Import | ast.ImportFrom
+    counts = {
+        block: sum(not isinstance(node, imports) for node in nodes)
+        for block, nodes in blocks.items()
+    }
+    assert {block: count for block, count in counts.items() if count > 5} == {}
 
 
 @pytest.fixture

@@ -90,6 +90,10 @@ def test_commands_take_over_what_python_has_drawn(folder, monkeypatch):
     study.report()
     files = ["results/depth/runs.nc", "results/depth/analysis.nc"]
     assert here("report", *files) == 0
+    tables = {path: path.read_bytes() for path in study.tables("latex")}
+    assert [path.name for path in tables] == ["runs.tex", "answers.tex"]
+    assert here("export", "depth", "--to", "latex", "--output", "again") == 0
+    assert [Path("again", path.name).read_bytes() for path in tables] == [*tables.values()]
 
 
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
 from packaging.utils import canonicalize_name
 from packaging.version import Version
 from ruamel.yaml import YAML
@@ -46,6 +47,55 @@ def test_citation_and_changelog_agree_with_the_project():
     # conda environment has the same python
     packages = YAML(typ="safe").load(ROOT / "environment.yaml")["dependencies"]
     assert f"python{PROJECT['requires-python']}" in packages
+
+
+CONDA = {"dask": "dask-core", "matplotlib": "matplotlib-base"}
+"""Names on conda-forge that are not those of the package index."""
+
+
+def test_the_recipe_for_conda_needs_what_the_project_needs():
+    recipe = YAML(typ="safe").load(ROOT / "recipe" / "recipe.yaml")
+    context = recipe["context"]
+    stated = [
+        line.replace("${{ python_min }}", context["python_min"]).partition(" ")[::2]
+        for line in recipe["requirements"]["run"]
+    ]
+    needs = [Requirement(line) for line in PROJECT["dependencies"]]
+    expected = {CONDA.get(name := canonicalize_name(need.name), name): need for need in needs}
+    specifiers = {name: need.specifier for name, need in expected.items()}
+    specifiers["python"] = SpecifierSet(PROJECT["requires-python"])
+    assert {canonicalize_name(name): SpecifierSet(text) for name, text in stated} == specifiers
+    assert context["version"] == PROJECT["version"]
+    assert recipe["about"]["summary"] == PROJECT["description"]
+    entry_points = dict(line.split(" = ") for line in recipe["build"]["python"]["entry_points"])
+    assert entry_points == PROJECT["scripts"]
+    (backend,) = tomllib.loads((ROOT / "pyproject.toml").read_text())["build-system"]["requires"]
+    assert backend in {line.replace(" ", "") for line in recipe["requirements"]["host"]}
+
+
+SECTIONS = [
+    *("Summary", "Statement of need", "State of the field", "Software design", "Example"),
+    *("Research impact statement", "AI usage disclosure", "Acknowledgements", "References"),
+]
+"""What the Journal of Open Source Software requires, and an example."""
+
+
+def test_the_paper_is_in_the_form_of_its_journal():
+    _, head, text = (ROOT / "paper" / "paper.md").read_text(encoding="utf-8").split("---\n", 2)
+    metadata = YAML(typ="safe").load(head)
+    assert metadata.keys() >= {"title", "tags", "authors", "affiliations", "date"}
+    assert {author["affiliation"] for author in metadata["authors"]} <= {
+        affiliation["index"] for affiliation in metadata["affiliations"]
+    }
+    assert re.fullmatch(r"\d{1,2} [A-Z][a-z]+ \d{4}", metadata["date"])
+    code = re.compile("^```.*?^```", re.DOTALL | re.MULTILINE)
+    prose = code.sub("", text)
+    assert 750 <= len(prose.split()) <= 1750
+    assert re.findall(r"^# (.*)$", prose, re.MULTILINE) == SECTIONS
+    references = (ROOT / "paper" / metadata["bibliography"]).read_text(encoding="utf-8")
+    entries = re.findall(r"^@\w+\{(\w+),", references, re.MULTILINE)
+    assert sorted(set(re.findall(r"@(\w+)", prose))) == sorted(entries)
+    assert all((ROOT / "paper" / path).exists() for path in re.findall(r"\]\((.*?)\)", prose))
 
 
 def stand_in(version, fails_on):

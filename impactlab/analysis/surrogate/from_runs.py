@@ -43,7 +43,8 @@ def _can_be_fitted(runs: xr.Dataset) -> bool:
     if "run" not in runs.dims or correlations(runs):
         return False
     distributions = (runs[n].attrs if n in runs.coords else {} for n in listed(runs, "varied"))
-    return all(attrs.get("distribution") in DISTRIBUTIONS for attrs in distributions)
+    kinds = [DISTRIBUTIONS.get(attrs.get("distribution", "")) for attrs in distributions]
+    return all(kind is not None and not kind.is_discrete for kind in kinds)
 
 
 @dataclass(frozen=True)

@@ -101,7 +101,10 @@ def refine_cases(runs: xr.Dataset, solve: Step, count: int | None = None) -> xr.
         )
     if "function" in runs.attrs or wings.among(runs.coords.get("beam_model", "")):
         raise ValueError(f"study {study!r}: its runs are not of a beam model, so they have no grid")
-    names, first = listed(runs, "varied"), _first(in_order(runs), count).compute()
+    names = listed(runs, "varied")
+    if drawn := [name for name in ("nodes", "points") if name in names]:
+        raise ValueError(f"study {study!r}: draws its {drawn[0]}, so there is no grid to refine")
+    first = _first(in_order(runs), count).compute()
     nodes, points = int(runs["nodes"]), int(runs["points"])
     grids = {"used": (nodes, points), "finer": (2 * nodes - 1, points)}
     grids["more_points"] = nodes, 2 * points - 1

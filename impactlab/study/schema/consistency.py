@@ -10,7 +10,7 @@ import numpy as np
 from impactlab import wings
 from impactlab.analysis import ANALYSES
 from impactlab.methods import NO_DISTRIBUTION
-from impactlab.methods.distributions import Choice, Distribution
+from impactlab.methods.distributions import Choice, Distribution, Integers
 from impactlab.methods.grid import Grid
 from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
@@ -55,13 +55,15 @@ def further_models(study: ImpactStudy | StudyFile) -> list[wings.FurtherModel]:
 
 
 def values_of(sampling: Grid | RandomSample, name: str, base: Value) -> tuple[Value, ...]:
-    """Return all values of a parameter that a sample draws no numbers for."""
+    """Return all values of a parameter that a sample draws no numbers for, or the ends of those."""
     entry = sampling.parameters.get(name)
     values: tuple[Value, ...] = (sampling.fixed.get(name, base),)
     if isinstance(sampling, Grid) and entry is not None:
         values = entry
     elif isinstance(entry, Choice):
         values = tuple(entry.values)
+    elif isinstance(entry, Integers):
+        values = entry.low, entry.high
     return values
 
 

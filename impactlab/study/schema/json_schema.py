@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from impactlab.methods import METHODS
-from impactlab.methods.distributions import CHOICE, DISTRIBUTIONS, ENTRIES
+from impactlab.methods.distributions import CHOICE, DISTRIBUTIONS, ENTRIES, Integers
 from impactlab.methods.grid import Grid, Range
 from impactlab.model.parameters import PARAMETERS, Parameter
 from impactlab.study.schema.declarations import DISCRETISATION, IMPACT, StudyFile
@@ -102,8 +102,8 @@ def _sample_entry(parameter: Parameter) -> Schema:
     names: list[str] = ["fixed"]
     if parameter.choices:
         names += [CHOICE]
-    elif not parameter.is_integer:
-        names += DISTRIBUTIONS
+    else:
+        names += [Integers.name()] if parameter.is_integer else DISTRIBUTIONS
     branches = []
     for name in names:
         section = _object(ENTRIES[name])

@@ -13,7 +13,7 @@ from impactlab.law_texts import OWN
 from impactlab.methods.runs import listed
 from impactlab.model.case_table import case_table
 from impactlab.model.contact_law import LAW_NAMES
-from impactlab.model.cost import work
+from impactlab.model.cost import ANY_RUN, work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.flow_law import FLOW_LAW_NAMES
 from impactlab.model.impact import Impact, paper_impact
@@ -37,8 +37,6 @@ from impactlab.variables import (
     described,
     status_bits,
 )
-
-_OF_ANY_RUN = 6000.0  # cost of a run beside its node-steps: about 20 µs
 
 _BESIDE_SPHERES = ("strike_position", "support_left", "support_right")
 """What may be at odds with further spheres."""
@@ -172,7 +170,7 @@ SOLVER = Solver(
     columns=columns,
     failures=lambda design: status_bits(listed(design, "responses")),
     cases=cases,
-    cost=lambda cases: work(cases) + _OF_ANY_RUN,  # in node-steps of the paper's beam
+    cost=lambda cases: work(cases) + ANY_RUN,  # in node-steps of the paper's beam
     values=values,
     solve=lambda cases, form: solve(
         cases,

@@ -34,6 +34,8 @@ from impactlab.study.solvers.kernels import kept
 from impactlab.study.store import OutputSpec
 from impactlab.variables import FLAGS, RESPONSES
 
+_NUMBERS = {"f": "f8", "i": "i8"}
+"""Types of numbers in cases, by the kind of those that are drawn."""
 _COST = 3e6  # cost of calling functions once, about 10 ms
 
 
@@ -312,7 +314,7 @@ def _points(task: Task, design: xr.Dataset, runs: Array) -> Array:
     }
     # as wide as the longest word of the study, so that equal cases have equal bytes in any batch
     kinds = [
-        (name, np.asarray(words, str).dtype if words.size else "f8")
+        (name, np.asarray(words, str).dtype if words.size else _NUMBERS[design[name].dtype.kind])
         for name, words in choices.items()
     ]
     table = np.zeros(runs.size, kinds)

@@ -111,7 +111,7 @@ def test_methods_that_need_an_order_refuse_words(problems, text, method, own):
         (
             {"parameters": {"points": CHOICE}},
             "sampling.parameters.points",
-            "is a whole number and cannot be sampled",
+            "is a whole number: write {distribution: integers",
         ),
         (
             {"parameters": {"beam_model": CHOICE | {"values": ["rigid", "solid", "elastic"]}}},

@@ -3,6 +3,7 @@
 import asyncio
 import gc
 import re
+import signal
 import time
 from pathlib import Path
 
@@ -34,6 +35,14 @@ def test_scheduler_workers_and_dashboard_listen_on_the_loopback_alone(kind):
     with Engine(kind, workers=2).client() as client:
         client.wait_for_workers(2 if kind == "processes" else 1, timeout=60)
         assert "127.0.0.1" in listening() <= before | {"127.0.0.1"}
+
+
+def test_workers_start_where_signals_have_no_mask(monkeypatch):
+    """As on Windows, where multiprocessing has no tracker of resources either."""
+    monkeypatch.delattr(signal, "pthread_sigmask")
+    monkeypatch.delattr(engine, "resource_tracker")
+    with Engine("threads", workers=1).client() as client:
+        assert client.submit(abs, -1).result() == 1
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Files whole or not at all, and words for a disk that is full."""
 
+import os
 import subprocess
 
 import numpy as np
@@ -30,6 +31,14 @@ def test_a_failed_write_leaves_the_old_file_and_no_rubbish(tmp_path):
         write_netcdf(xr.Dataset({"a": ((), object())}), path, "runs")
     assert read_netcdf(path, "runs")["a"].item() == 1.0
     assert [entry.name for entry in tmp_path.iterdir()] == ["runs.nc"]
+
+
+def test_what_is_synced_is_open_for_writing(tmp_path, monkeypatch):
+    """Windows refuses to sync a file that may only be read."""
+    synced = []
+    monkeypatch.setattr(os, "fsync", lambda file: synced.append(os.write(file, b"")))
+    write_netcdf(noise(10), tmp_path / "x.nc", "runs")
+    assert synced == [0]
 
 
 @pytest.fixture

@@ -81,7 +81,7 @@ WRONG_IN_SAMPLE = [
     ("seed", True, "expected a whole number"),
     ("second_order", 1, "expected true or false"),
     ("parameters.nodes", {"distribution": "uniform", "low": 5, "high": 9}, "is a whole number"),
-    ("parameters.points", 3, "cannot be sampled: vary it in a study with method: grid"),
+    ("parameters.points", 3, "or vary it in a study with method: grid"),
     ("parameters.rule", ["lobatto"], "takes words: write {distribution: choice, values: [lobatto"),
     ("parameters.velocity", [1, 2], "expected a mapping with the key distribution"),
     (

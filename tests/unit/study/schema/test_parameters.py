@@ -16,6 +16,7 @@ CASES = {
     "truncated_normal": {"mean": 10.0, "standard_deviation": 2.0, "low": 9.0, "high": 14.0},
     "lognormal": {"median": 10.0, "geometric_standard_deviation": 1.3},
     "triangular": {"low": 2.0, "mode": 3.0, "high": 8.0},
+    "integers": {"low": 3, "high": 11, "step": 2},
 }
 
 
@@ -45,6 +46,7 @@ MEANS = {
     "truncated_normal": truncated_normal_mean(10.0, 2.0, 9.0, 14.0),
     "lognormal": 10.0 * math.exp(math.log(1.3) ** 2 / 2),
     "triangular": 13.0 / 3.0,
+    "integers": 7.0,
 }
 
 
@@ -63,7 +65,8 @@ def test_quantiles_rise_and_keep_to_the_bounds(name):
     given = made(name, **CASES[name])
     assert given.arguments() == {"distribution": name, **CASES[name]}
     values = given.quantile(np.array([2.0**-31, 1e-6, 0.3, 0.5, 0.9, 1 - 1e-6, 1 - 2.0**-31]))
-    assert np.all(np.diff(values) > 0)
+    rises = np.diff(values)
+    assert np.all(rises >= 0 if given.is_discrete else rises > 0)
     assert np.all(np.isfinite(values))
     bounds = given.bounds()
     assert ("low" in CASES[name]) == bool(bounds)
@@ -84,6 +87,9 @@ def test_quantiles_rise_and_keep_to_the_bounds(name):
         ("lognormal", {"geometric_standard_deviation": 0.1}, "geometric_standard_deviation", "1.1"),
         ("triangular", {"mode": 9.0}, "mode", "must lie from low to high"),
         ("triangular", {"mode": 1.0}, "mode", "must lie from low to high"),
+        ("integers", {"high": 3}, "high", "must be above low"),
+        ("integers", {"low": 2.5}, "low", "expected a whole number"),
+        ("integers", {"step": 3}, "step", "does not lead from low to high"),
     ],
 )
 def test_contradictory_arguments_are_refused(name, change, where, words):
@@ -128,9 +134,14 @@ def test_a_fixed_value_must_be_possible(refused, sampled, name, value, words):
     refused(text, f"sampling.parameters.{name}.value", words)
 
 
-def test_a_whole_number_may_be_fixed_but_not_drawn(refused, sampled):
+def test_a_whole_number_is_fixed_or_drawn_among_whole_numbers(read, refused, sampled):
     text = sampled("sobol", {"nodes": UNIFORM}, base_samples=8)
-    refused(text, "sampling.parameters.nodes", "or write {distribution: fixed, value: ...}")
+    refused(text, "sampling.parameters.nodes", "write {distribution: integers, low: ...")
+    whole = {"distribution": "integers", "low": 21, "high": 81, "step": 20}
+    drawn = read(sampled("sobol", {"nodes": whole}, base_samples=8)).sampling.columns()["nodes"]
+    assert {*drawn.tolist()} <= {21, 41, 61, 81}
+    even = sampled("sobol", {"nodes": whole | {"high": 80, "step": 1}}, base_samples=8)
+    refused(even, "sampling.parameters.nodes.high", "must be odd")
 
 
 @pytest.mark.parametrize("method", ["sobol", "morris", "fast", "delta", "pawn", "regression"])
