@@ -199,7 +199,7 @@ def test_positive_leaves_gaps():
 
 
 def test_titles_wrapped_to_fit_are_one_line_in_words_and_data(study, tmp_path):
-    """A blank line or a line that begins anew would end the text in the source of a page."""
+    """Line breaks would end the text in the source of a page."""
     figure = CATALOGUE["force_history"].plot(*study)
     for axes in figure.axes:
         axes.set_title("a long\nname", loc="left")
