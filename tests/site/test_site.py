@@ -1,5 +1,6 @@
 """The built site as a reader has it: links, what pages ask for, and code blocks that run."""
 
+import json
 import re
 import shlex
 import shutil
@@ -140,6 +141,16 @@ def test_no_page_asks_for_anything_outside():
 def test_notebooks_show_their_figures(page, figures):
     text = (SITE / "tutorials" / f"{page}.html").read_text(encoding="utf-8")
     assert len(re.findall(r"<img [^>]*_images/", text)) == figures
+
+
+def test_every_tutorial_is_a_notebook_to_download():
+    for path in (ROOT / "docs" / "tutorials").glob("*.md"):
+        links = read(SITE / "tutorials" / f"{path.stem}.html").links
+        books = [link for link in links if link.endswith(".ipynb")]
+        assert len(books) == (path.stem != "index"), path.stem
+        for book in books:
+            cells = json.loads((SITE / "tutorials" / book).read_text(encoding="utf-8"))["cells"]
+            assert {cell["cell_type"] for cell in cells} == {"markdown", "code"}
 
 
 def test_every_study_has_a_page_with_answer_and_figures():
