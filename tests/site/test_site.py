@@ -164,6 +164,16 @@ def test_every_study_has_a_page_with_answer_and_figures():
     assert not bare
 
 
+@pytest.mark.parametrize("name", ["witness", "witness_parts", "witness_swing"])
+def test_pages_beside_3d_elements_open_on_the_comparison(name):
+    text = (SITE / "gallery" / f"{name}.html").read_text(encoding="utf-8")
+    figures = re.findall(r'<img [^>]*src="\.\./_images/(\w+)\.png"', text)
+    assert figures[0].startswith("witness")
+    opened = text.partition("<details")[0]
+    assert "3-D" in opened
+    assert "Convergence" not in opened.partition("The answer")[2]
+
+
 def test_every_public_name_is_on_the_page_of_the_api():
     names = {name for name in dir(il) if not isinstance(getattr(il, name), ModuleType)}
     names |= {f"plot.{name}" for name in il.plot.__all__}
