@@ -103,6 +103,19 @@ def _link(app: Sphinx, what: str, name: str, thing, options, lines: list[str]) -
     lines[:] = [re.sub(r"`il\.([\w.]+)`", r"`il.\1 <impactlab.\1>`", line) for line in lines]
 
 
+def _download(app: Sphinx, doctree) -> None:
+    """Begin each tutorial with a link to its executed notebook."""
+    from docutils.nodes import paragraph, section
+    from sphinx.addnodes import download_reference
+
+    name = app.env.docname
+    notebook = Path(app.env.mystnb_config.output_folder, f"{name}.ipynb")
+    if name.startswith("tutorials/") and notebook.exists():
+        target = f"/{os.path.relpath(notebook, app.srcdir)}"
+        link = download_reference("", "Download this page as a notebook", reftarget=target)
+        doctree.next_node(section).insert(1, paragraph("", "", link))
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Write pages from results first; equations become MathML, which needs no script."""
     app.add_html_math_renderer(
@@ -112,4 +125,5 @@ def setup(app: Sphinx) -> dict[str, bool]:
     )
     app.connect("autodoc-process-docstring", _link)
     app.connect("builder-inited", lambda app: made.make())
+    app.connect("doctree-read", _download, priority=400)  # before Sphinx collects downloads
     return {"parallel_read_safe": True, "parallel_write_safe": True}

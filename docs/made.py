@@ -18,6 +18,7 @@ import datasets
 from PIL import Image
 
 import impactlab as il
+from impactlab.fem3d.figures import witness
 from impactlab.figures.draw import OVERVIEW
 from impactlab.figures.record import listed
 from impactlab.files import read_netcdf, write_netcdf
@@ -36,6 +37,8 @@ DEAR = ("sobol_large", "witness", "witness_mesh", "witness_parts", "witness_swin
 """Studies of more than a minute of one core, which the site does not solve."""
 MOST = 6
 """Figures stored of a study, the first ones of its report."""
+INCH = 140
+"""Pixels of a page per inch of a figure: as wide as the text, or half as wide."""
 WORKERS = min(4, os.cpu_count() or 1)
 SHOWN = ("velocity", "contact_laws", "shear", "strike_position", "supports", "strikes", "layers",
          "material", "model_form", "sobol_slow", "sobol", "sobol_fast", "sobol_large",
@@ -48,6 +51,9 @@ FIRST = {
     "fig10": "plastic_strain",
     "shear": "shear",
     "velocity": "contact_duration",
+    "witness": "witness",
+    "witness_parts": "witness_parts",
+    "witness_swing": "witness",
 }
 """Figures that come first on a page, where the report begins with another one."""
 GROUPS = {
@@ -76,9 +82,13 @@ def _current(made: Path, *files: Path) -> bool:
 
 
 class Shown(NamedTuple):
-    """The part of a page that comes from runs: sentences, captions by figure, their folder."""
+    """The part of a page that comes from runs: sentences, captions by figure, their folder.
+
+    further: the sentences that stand folded below the figures, on the pages of a comparison.
+    """
 
     answers: list[str]
+    further: list[str]
     captions: dict[str, dict[str, str]]
     pictures: Path
     remark: str = ""
@@ -100,14 +110,20 @@ def _study(path: Path) -> tuple[str, tuple[str, str]]:
         target = GALLERY / path.stem / f"{name}.png"
         target.parent.mkdir(exist_ok=True)
         shutil.copyfile(shown.pictures / f"{name}.png", target)
+        with Image.open(target) as picture:
+            width = picture.width / picture.info["dpi"][0] * INCH
         lines += [
             *([f"::::{{dropdown}} {caption['title']}"] if at else []),
             f":::{{figure}} {path.stem}/{name}.png",
-            f":alt: {caption['alt']}\n",
+            f":alt: {caption['alt']}",
+            f":width: {width:.0f}px\n",
             caption["caption"],
             ":::\n",
             "::::\n" if at else "",
         ]
+    if shown.further:
+        lines += ["::::{dropdown} All responses, and their convergence"]
+        lines += [*(f"- {each}" for each in shown.further), "::::\n"]
     lines += [
         "## The file behind it\n",
         f"`impactlab go studies/{path.name}` solves it and writes its report, with every figure, "
@@ -120,14 +136,21 @@ def _study(path: Path) -> tuple[str, tuple[str, str]]:
 
 
 def _solved(study: il.Study, workers: int = 1) -> Shown:
-    """Solve and draw a study; its leading figure, or that of FIRST, comes first."""
+    """Solve and draw a study; its leading figure, or that of FIRST, comes first.
+
+    The answer of beam models beside 3-D finite elements is how much they differ.
+    """
     runs = study.run(workers=workers)
     study.figures()
     analysis = read_netcdf(study.folder / "analysis.nc", "analysis")
+    answers, compared = il.answers(runs, analysis), witness.findings(runs, analysis)
     captions = listed(study.folder / "figures")
     first = FIRST.get(study.name) or leading(captions)
+    for sentence in compared:  # the answer is not said again beneath the figure
+        captions[first]["caption"] = captions[first]["caption"].replace(f" {sentence}", "")
     return Shown(
-        il.answers(runs, analysis),
+        compared or answers,
+        answers if compared else [],
         {first: captions[first]} | captions,
         study.folder / "figures",
     )
@@ -143,12 +166,12 @@ def _stored(study: il.Study) -> Shown:
             f":::{{note}}\nIt takes longer to solve than this site takes to build. {again} solves "
             "it; build the site again, and its answer and figures are here.\n:::\n"
         )
-        return Shown([], {}, file.parent, remark)
+        return Shown([], [], {}, file.parent, remark)
     remark = (
         f"Solved on {kept['solved']} by impactlab {kept['impactlab']}, not with this site: "
         f"it takes longer. {again} renews it.\n"
     )
-    return Shown(kept["answers"], kept["figures"], file.parent, remark)
+    return Shown(kept["answers"], kept["further"], kept["figures"], file.parent, remark)
 
 
 def store(names: Sequence[str]) -> None:
@@ -164,12 +187,15 @@ def store(names: Sequence[str]) -> None:
         for each in captions:
             with Image.open(shown.pictures / f"{each}.png") as picture:
                 half = picture.convert("RGB").reduce(2)
-                half.quantize(64, dither=Image.Dither.NONE).save(folder / f"{each}.png")
+                few = half.quantize(64, dither=Image.Dither.NONE)
+                dpi = picture.info["dpi"][0] / 2
+                few.save(folder / f"{each}.png", dpi=(dpi, dpi))
         kept = {
             "study_sha256": study.declared.sha256,
             "solved": read_netcdf(study.folder / "runs.nc", "runs").attrs["created"][:10],
             "impactlab": il.__version__,
             "answers": shown.answers,
+            "further": shown.further,
             "figures": captions,
         }
         text = json.dumps(kept, indent=1, ensure_ascii=False) + "\n"
@@ -230,7 +256,9 @@ def _verification() -> None:
             unit = "" if worst.units == "1" else f" {worst.units}"
             row[2] = f"{worst.quantity}, {worst.where}"
             row[3:5] = (f"{value:.5g}{unit}" for value in (worst.ours, worst.independent))
-            row[5] = f"{worst.ratio:.0%}"
+            absolute = worst.measure == "absolute"
+            limit = f"{worst.tolerance:.2g}{unit}" if absolute else f"{100 * worst.tolerance:.2g} %"
+            row[5] = f"{100 * worst.ratio:.0f} % of {limit}"
         row[0] += "" if each.verdict == "passed" else f": **{each.verdict}**"
         lines.append("| " + " | ".join(cell.replace("|", r"\|") for cell in row) + " |")
     lines += ["", ":::{dropdown} Where the independent values come from"]

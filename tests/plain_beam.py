@@ -1,4 +1,4 @@
-"""The plain solver of physics.md, to compare the kernels with: the same schemes, written plainly.
+"""A plain solver to compare the kernels with: the same schemes, written plainly.
 
 The whole beam, every fibre through its return mapping at every step, the contact laws with
 unloading and reloading written out, the modal scheme's sums over modes as dense matrices of the

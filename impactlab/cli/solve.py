@@ -21,6 +21,7 @@ from impactlab.cli.options import (
     stored_in,
     study_or_design,
 )
+from impactlab.cli.studies import shipped
 
 if TYPE_CHECKING:
     from impactlab.study.schema.declarations import AnyStudy, Verification
@@ -271,6 +272,8 @@ def verify(
             metavar="STUDY",
             help="A study file of checks, its findings.nc, or results/NAME.",
             callback=stored_in("findings.nc"),
+            default_factory=lambda: shipped("studies/verification.yaml"),
+            show_default="every check",
         ),
     ],
     output: Annotated[

@@ -48,6 +48,12 @@ other commands; `docs/studies.md` lists every key. For clusters: `profiles/`, `d
 """
 
 
+def shipped(name: str) -> Path:
+    """Return the path of a file of the repository, in a checkout or as the wheel has it."""
+    package = Path(__file__).parents[1]
+    return (package / "project" if (package / "project").is_dir() else package.parent) / name
+
+
 def studies(
     folder: Folder = Path("studies"),
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for workflows.")] = False,
@@ -129,11 +135,10 @@ def new(folder: Annotated[Path, typer.Argument(help="New or empty folder.")]) ->
 
     if folder.exists() and (folder.is_file() or any(folder.iterdir())):
         raise ValueError(f"{folder}: is there already: name a folder that is new, or empty")
-    package = Path(__file__).parents[1]
-    source = package / "project" if (package / "project").is_dir() else package.parent
     for name, place in FILES.items():
+        source = shipped(name)
         (folder / place).parent.mkdir(parents=True, exist_ok=True)
-        (copytree if (source / name).is_dir() else copy)(source / name, folder / place)
+        (copytree if source.is_dir() else copy)(source, folder / place)
     for page in (folder / "docs").glob("*.md"):  # without links to pages that are not copied
         text = page.read_text(encoding="utf-8")
         page.write_text(re.sub(_ELSEWHERE, r"\1", text), encoding="utf-8")

@@ -26,7 +26,6 @@ from impactlab.verdicts import ROUND_OFF, TOLERANCE
 
 _DIFFERENCE = "Relative difference (–)"
 _FEWEST = 3
-_NAMED = 3  # largest number of cases that a caption names
 CAPTION = (
     "Difference to the limit, relative to it: Richardson's value, or where there is none that of "
     "the least-squares fit, or else the finest value. Thin dashes: the order p of that limit, over "
@@ -167,7 +166,10 @@ def _draw_values(ax: Axes, runs: xr.Dataset, name: str, spacing: Floats, selecte
 
 
 def _verdicts(runs: xr.Dataset, analysis: xr.Dataset, axis: str, names: list[str]) -> str:
-    """Return sentences on the grid of the verdicts, and the cases of each that is a warning."""
+    """Return sentences on the grid of the verdicts, and how many cases of each are a warning.
+
+    Of several cases the one with the largest uncertainty is named.
+    """
     needs = needed(runs, analysis)
     if needs is None or f"{axis}_verdict" not in needs.analysis:
         return ""
@@ -177,21 +179,18 @@ def _verdicts(runs: xr.Dataset, analysis: xr.Dataset, axis: str, names: list[str
     for name in names:
         flags = _of(needs.analysis, f"{axis}_verdict", name)
         warnings = [verdict.value for verdict in access.occurring(flags) if not verdict.sound]
-        cases = np.argwhere(np.isin(flags.values, warnings))
-        if not len(cases):
+        warned = flags.isin(warnings)
+        count = int(warned.sum())
+        if not count:
             continue
-        shown = [
-            ", ".join(
-                labels.value(runs[dim], position)
-                for dim, position in zip(flags.dims, case, strict=True)
-            )
-            for case in cases[:_NAMED]
-        ]
-        if len(cases) > _NAMED:
-            shown.append(f"{len(cases) - _NAMED} more")
-        if len(cases) == flags.size > 1:
-            shown = ["every case"]
-        place = f" ({'; '.join(shown)})" if any(shown) else ""
+        uncertainty = _of(needs.analysis, f"{axis}_uncertainty", name).fillna(np.inf)
+        worst = uncertainty.where(warned, -1.0).argmax(...)
+        text = ", ".join(labels.value(runs[dim], int(worst[dim])) for dim in flags.dims)
+        if count == flags.size > 1:
+            text = "every case"
+        elif count > 1:
+            text = f"{count} of {flags.size} cases, the worst at {text}"
+        place = f" ({text})" if text else ""
         places.setdefault(place, []).append(labels.response(name))
     entries = [labels.listing(listed) + place for place, listed in places.items()]
     if entries:

@@ -105,7 +105,7 @@ def drawn(figure: Figure) -> Iterator[Drawn]:
         if isinstance(ax, Panel) and ax.series:
             legend = ax.get_legend()
             title = str(legend.get_title().get_text()) if legend else ""
-            panel = ax.get_title(loc="left") or title or f"panel {number}"
+            panel = _line(ax.get_title(loc="left") or title) or f"panel {number}"
             across, up = _label(figure, ax, "x"), _label(figure, ax, "y")
             if "y" in ax.names:  # an axis of names has no label
                 up = str(ax.get_ylabel())
@@ -125,7 +125,12 @@ def _categories(ax: Panel, series: Series, finite: NDArray[np.bool_]) -> list[st
         return [""] * int(finite.sum())
     names, places = ax.names[which], np.rint(getattr(series, which)[finite])
     places = np.clip(places, 0, len(names) - 1).astype(int)
-    return [" ".join(names[place].split()) for place in places]
+    return [_line(names[place]) for place in places]
+
+
+def _line(text: str) -> str:
+    """Return a text that was wrapped to fit as one line."""
+    return " ".join(text.split())
 
 
 def _label(figure: Figure, ax: Axes, axis: str) -> str:
@@ -139,7 +144,7 @@ def _label(figure: Figure, ax: Axes, axis: str) -> str:
         if getattr(spec, place) == span
     )
     texts = [getattr(ax, f"get_{axis}label")(), getattr(figure, f"get_sup{axis}label")(), *beside]
-    return " ".join(str(next(filter(None, texts), "")).split())
+    return _line(str(next(filter(None, texts), "")))
 
 
 def alt(figure: Figure) -> str:
@@ -154,7 +159,7 @@ def alt(figure: Figure) -> str:
         shown = curves if every else [max(curves, key=lambda curve: float(curve.values.max()))]
         text = "; ".join(map(_curve, shown))
         described.append(f"{name}: {text if every else f'highest of {len(curves)}: {text}'}.")
-    titles = {ax: ax.get_title(loc="left") or "Panel" for ax in figure.axes}
+    titles = {ax: _line(ax.get_title(loc="left")) or "Panel" for ax in figure.axes}
     maps = {ax: text for ax in figure.axes if (text := _cells(ax))}
     meshes = [
         f"{titles[ax]}: {_mesh(cells)}."
@@ -163,7 +168,7 @@ def alt(figure: Figure) -> str:
         if type(cells) is PolyCollection  # and no area below a curve, which is a subclass
     ]
     remarks = [  # words in place of data
-        f"{title}: {' '.join(ax.texts[0].get_text().split())}."
+        f"{title}: {_line(ax.texts[0].get_text())}."
         for number, (ax, title) in enumerate(titles.items(), 1)
         if ax.texts and not panels & {title, f"panel {number}"} and ax not in maps
     ]

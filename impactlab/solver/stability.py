@@ -2,8 +2,8 @@
 
 Leapfrog is stable up to 2/omega, with k_c the stiffness of the contact:
     the paper's beam  omega^2 <= 16 (EI)_q/(rho A dx^4) + k_c (1/(rho A dx) + 1/m_s)
-                      (physics.md, in the place of the paper's bar-wave limit), at all ends: of the
-                      row sums of the curvatures' matrix, a free or clamped end's are smaller; a
+                      (docs/theory.md, in the place of the paper's bar-wave limit), at all ends: of
+                      the row sums of the curvatures' matrix, a free or clamped end's are smaller; a
                       free end that is struck has half the mass in the second term; the stiffest
                       spring of an elastic end adds 2 k_t/(rho A dx),
                       and a foundation k/(rho A)

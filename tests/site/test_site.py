@@ -1,6 +1,7 @@
 """The built site as a reader has it: links, what pages ask for, and code blocks that run."""
 
 import ast
+import json
 import re
 import shlex
 import shutil
@@ -143,6 +144,16 @@ def test_notebooks_show_their_figures(page, figures):
     assert len(re.findall(r"<img [^>]*_images/", text)) == figures
 
 
+def test_every_tutorial_is_a_notebook_to_download():
+    for path in (ROOT / "docs" / "tutorials").glob("*.md"):
+        links = read(SITE / "tutorials" / f"{path.stem}.html").links
+        books = [link for link in links if link.endswith(".ipynb")]
+        assert len(books) == (path.stem != "index"), path.stem
+        for book in books:
+            cells = json.loads((SITE / "tutorials" / book).read_text(encoding="utf-8"))["cells"]
+            assert {cell["cell_type"] for cell in cells} == {"markdown", "code"}
+
+
 def test_every_study_has_a_page_with_answer_and_figures():
     """Answers and figures of large studies are those that `make stored` keeps."""
     bare = set()
@@ -152,6 +163,16 @@ def test_every_study_has_a_page_with_answer_and_figures():
             if "<figure" not in text or "The answer" not in text:
                 bare.add(path.stem)
     assert not bare
+
+
+@pytest.mark.parametrize("name", ["witness", "witness_parts", "witness_swing"])
+def test_pages_beside_3d_elements_open_on_the_comparison(name):
+    text = (SITE / "gallery" / f"{name}.html").read_text(encoding="utf-8")
+    figures = re.findall(r'<img [^>]*src="\.\./_images/(\w+)\.png"', text)
+    assert figures[0].startswith("witness")
+    opened = text.partition("<details")[0]
+    assert "3-D" in opened
+    assert "Convergence" not in opened.partition("The answer")[2]
 
 
 def test_every_public_name_is_on_the_page_of_the_api():

@@ -3,6 +3,7 @@
 import inspect
 import re
 from importlib import import_module
+from pathlib import Path
 from types import ModuleType
 
 import pytest
@@ -51,6 +52,17 @@ def _methods(name, owner):
 
 
 PUBLIC = _public()
+
+
+def test_pages_that_sources_name_exist():
+    root = Path(il.__file__).parents[1]
+    named = {
+        (path.relative_to(root).as_posix(), name)
+        for path in root.glob("impactlab/**/*.py")
+        for name in re.findall(r"[\w/]+\.md\b", path.read_text(encoding="utf-8"))
+    }
+    assert len(named) > 10
+    assert {(path, name) for path, name in named if not (root / name).exists()} == set()
 
 
 def _raises(thing):

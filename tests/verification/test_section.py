@@ -29,7 +29,7 @@ def make_section(points, rule, isotropic=0.0, kinematic=0.0):
 
 
 def moments(cut, curvatures):
-    """Moment (sign of physics.md) along a history of curvature."""
+    """Moment (sign of docs/theory.md) along a history of curvature."""
     plastic_strain, peeq = np.zeros(cut.z.size), np.zeros(cut.z.size)
     history = []
     for kappa in curvatures:

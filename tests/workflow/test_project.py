@@ -46,12 +46,12 @@ def assert_pages_are_there(project):
         assert not [page for page in pages if not page.exists() and "http" not in str(page)], path
 
 
-def test_the_wheel_brings_what_a_project_copies():
+def test_the_wheel_brings_what_commands_read():
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]
     included = settings["hatch"]["build"]["targets"]["wheel"]["force-include"]
     assert included.pop("CITATION.cff") == "impactlab/CITATION.cff"  # which results refer to
     assert included == {name: f"impactlab/project/{name}" for name in included}
-    for name in FILES:
+    for name in (*FILES, "studies/verification.yaml"):
         assert any(name == kept or name.startswith(f"{kept}/") for kept in included), name
 
 

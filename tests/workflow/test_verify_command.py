@@ -41,6 +41,15 @@ def breaks():
     raise RuntimeError("of all things")
 
 
+def test_without_a_file_every_check_is_made(tmp_path, monkeypatch, capsys):
+    for name in CATALOGUE:
+        monkeypatch.setitem(CATALOGUE, name, Check(name, name, "made up", passes))
+    monkeypatch.chdir(tmp_path)
+    assert here("verify") == 0
+    assert f"{len(CATALOGUE)} checks" in capsys.readouterr().out
+    assert Path("results/verification/findings.nc").exists()
+
+
 @pytest.mark.parametrize(
     ("check", "words"),
     [(fails, "bad: 1 of 2 comparisons"), (breaks, "bad: RuntimeError: of all things")],

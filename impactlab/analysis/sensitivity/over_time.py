@@ -202,7 +202,8 @@ def _of_history(sample: Sample, name: str) -> dict[str, Any]:
             means = np.moveaxis(without[:, 1:] / without[:, :1], 1, -1)
         middle, variance, varies = _spread(means, origin)
         parts = np.stack(ratios(means, factors), axis=-3)  # numerators, denominators
-        indices = parts[:, 0] / np.where(varies[..., None], parts[:, 1], np.nan)
+        defined = varies[..., None] & (parts[:, 1] != 0)
+        indices = parts[:, 0] / np.where(defined, parts[:, 1], np.nan)
         widths = half_width(indices[1:], sample.confidence)
         at_times[part], margins[part] = indices[0], np.where(np.isnan(indices[0]), np.nan, widths)
         mean[part] = origin + middle[0]

@@ -139,7 +139,7 @@ _LEAST, _ROOM = 2.0, 2.0
     "together, left out where nothing bounds it and cut at the panel's edge. Markers below are "
     "drawn a little beside their velocity, not to hide each other.",
     lambda runs, analysis: differ(runs) and bool(_drawn(runs)),
-    lambda runs, analysis: (access.missing_note(runs, _drawn(runs)),),
+    lambda runs, analysis: (*findings(runs, analysis), access.missing_note(runs, _drawn(runs))),
 )
 def witness(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw one column per response: values above, differences from the 3-D FE model below."""
@@ -230,7 +230,7 @@ _LABELS = {TIMOSHENKO: "contact law (Timoshenko beam)", SOLID: "3-D FE model"}
     "waves in the sphere do. Contact law in yielding: what yielding does to the solid over "
     "what it does under the contact law.",
     lambda runs, analysis: separable(runs) and all(name in runs for name in _HISTORIES),
-    lambda runs, analysis: (_finding(runs, analysis), access.missing_note(runs, NAMES)),
+    lambda runs, analysis: (*findings(runs, analysis), access.missing_note(runs, NAMES)),
 )
 def witness_parts(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw force against indentation on the left, the effects on the right."""
@@ -289,8 +289,8 @@ def _effects(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset) -> None:
     scales.linear(ax, "x")
 
 
-def _finding(runs: xr.Dataset, analysis: xr.Dataset) -> str:
-    """Return the shares as sentences; EFFECTS ends with all together."""
+def _of_effects(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+    """Return one sentence per response on the shares of effects; EFFECTS ends with all together."""
     sentences = []
     for name in NAMES:
         shares = [
@@ -301,7 +301,43 @@ def _finding(runs: xr.Dataset, analysis: xr.Dataset) -> str:
             pairs = zip(parts, EFFECTS.values(), strict=False)
             listed = labels.listing([f"{part} by the {effect}" for part, effect in pairs])
             sentences.append(f"The {labels.response(name)} changes by {listed}; together {total}.")
-    return " ".join(sentences)
+    return sentences
+
+
+def _of_models(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+    """Return one sentence per response on the differences of the beam models, over velocities."""
+    sentences, speeds = [], runs["velocity"].values
+    between = f"between {labels.number(speeds.min(), 3)} and {labels.number(speeds.max(), 3)} m/s"
+    for name in _drawn(runs):
+        solid, *beams = (side(runs, analysis, name, model) for model in models(runs))
+        gaps = [difference([beam], [solid]) for beam in beams]
+        parts = [
+            f"{labels.span(shares[np.isfinite(shares)], 2)} % with {labels.beam_model(model)}"
+            for shares, model in zip(
+                (100.0 * gap.value for gap in gaps), models(runs)[1:], strict=True
+            )
+            if np.isfinite(shares).any()
+        ]
+        if parts:
+            head = f"Difference of the {labels.response(name)} from the {MODEL.label} {between}"
+            sentences.append(f"{head}: {labels.listing(parts)}{_doubt(gaps)}.")
+    return sentences
+
+
+def _doubt(gaps: list[Side]) -> str:
+    """Return the largest numerical uncertainty of differences, "" where it is not known."""
+    widths = np.concatenate([gap.uncertainty for gap in gaps])
+    largest = 100.0 * float(np.max(widths, initial=0.0, where=~np.isnan(widths)))
+    if largest == np.inf:
+        return " (numerically without a bound in part)"
+    return f" (numerically ± {labels.number(largest, 2)} % or less)" if largest else ""
+
+
+def findings(runs: xr.Dataset, analysis: xr.Dataset) -> list[str]:
+    """Return what a study finds beside the 3-D FE model in sentences; none of other studies."""
+    if separable(runs):
+        return _of_effects(runs, analysis)
+    return _of_models(runs, analysis) if differ(runs) else []
 
 
 def _refined(runs: xr.Dataset) -> Refined:

@@ -1,7 +1,7 @@
 """Stronge's elastic-plastic contact, unloading with force continuity after Wang et al.
 
 Sources: Stronge, Impact Mechanics (2000), chapter 6; the paper, its Table 1 and Eqs. 15 to 17
-(misprints corrected: physics.md). th = 1.1; x = delta/delta_y, u = 2 x - 1:
+(misprints corrected: docs/theory.md). th = 1.1; x = delta/delta_y, u = 2 x - 1:
     x <= 1                       F = F_y x^1.5
     elastic-plastic              F = F_y u (1 + ln(u)/(3 th))
     fully plastic, u > U_PLASTIC F = 2.8 F_y u/th, joined where the two agree (x = 82.511)

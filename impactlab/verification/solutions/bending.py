@@ -1,9 +1,9 @@
 """Bending and static deflection of a beam of rectangular section, loaded once or to and fro.
 
-Moments have the sign of the curvature here (physics.md's M = B * integral of z sigma dz, with
-strain -z kappa, has the opposite one). Loaded once, the material is elastic, then hardens linearly
-with h, the sum of the isotropic and the kinematic modulus, which cannot be distinguished as long
-as no fibre unloads.
+Moments have the sign of the curvature here (docs/theory.md's M = B * integral of z sigma dz,
+with strain -z kappa, has the opposite one). Loaded once, the material is elastic, then hardens
+linearly with h, the sum of the isotropic and the kinematic modulus, which cannot be distinguished
+as long as no fibre unloads.
 
 To and fro, a fibre with kinematic hardening is a spring beside a perfectly plastic fibre, whose
 stress is clipped anew on every way; with isotropic hardening the elastic range reaches, on both

@@ -1,9 +1,9 @@
 """Every contact law written anew from its formulas, and its restitution by quadrature.
 
-A sphere on a rigidly backed half-space: no gravity, no waves. Sources: physics.md ("Further contact
-laws") and the papers named there; Stronge's law with force continuity is in stronge.py in closed
-form, too. Functions of plain numbers, all in SI: indentation d (m), effective modulus E (Pa) and
-radius R (m), the softer body's yield stress S (Pa) and Poisson's ratio nu.
+A sphere on a rigidly backed half-space: no gravity, no waves. Sources: docs/contact_laws.md and the
+papers named there; Stronge's law with force continuity is in stronge.py in closed form, too.
+Functions of plain numbers, all in SI: indentation d (m), effective modulus E (Pa) and radius R (m),
+the softer body's yield stress S (Pa) and Poisson's ratio nu.
 """
 
 from __future__ import annotations

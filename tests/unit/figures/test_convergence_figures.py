@@ -202,3 +202,21 @@ def test_what_has_no_limit_by_design_is_drawn_as_it_is(study):
     caption = NODES.caption(runs, judged)
     warned = "Not converged on the finest grid: peak force (15 m/s); peak plastic strain (every"
     assert warned in caption
+
+
+def test_several_cases_that_have_not_converged_are_counted_and_the_worst_named(study):
+    attrs = study[0]["velocity"].attrs
+    runs, analysis = (
+        part.sel(velocity=[0.99, 15.0, 15.0]).assign_coords(
+            velocity=("velocity", [0.99, 15.0, 20.0], attrs)
+        )
+        for part in study
+    )
+    for velocity, uncertainty in ((15.0, 0.1), (20.0, 0.2)):
+        case = {"response": "peak_force", "velocity": velocity}
+        analysis["nodes_verdict"].loc[case] = analysis["nodes_verdict"].loc[
+            {"response": "peak_plastic_strain", "velocity": 15.0}
+        ]
+        analysis["nodes_uncertainty"].loc[case] = uncertainty
+    caption = NODES.caption(runs, analysis)
+    assert "peak force (2 of 3 cases, the worst at 20 m/s)" in caption

@@ -196,3 +196,15 @@ def test_short_logarithmic_axes_still_have_labels():
 def test_positive_leaves_gaps():
     found = scales.positive([1.0, 0.0, -1.0, np.inf, np.nan, 1e-12], above=1e-9)
     np.testing.assert_array_equal(found, [1.0] + 5 * [np.nan])
+
+
+def test_titles_wrapped_to_fit_are_one_line_in_words_and_data(study, tmp_path):
+    """Line breaks would end the text in the source of a page."""
+    figure = CATALOGUE["force_history"].plot(*study)
+    for axes in figure.axes:
+        axes.set_title("a long\nname", loc="left")
+    data.save(figure, tmp_path, "figure")
+    with (tmp_path / "figure.csv").open(newline="") as file:
+        assert {row["panel"] for row in csv.DictReader(file)} == {"a long name"}
+    assert data.alt(figure).startswith("a long name: ")
+    assert "\n" not in data.alt(figure)

@@ -1,4 +1,4 @@
-"""The paper's case against its Tables 2 and 3, as physics.md prints them."""
+"""The paper's case against its Tables 2 and 3."""
 
 import pytest
 

@@ -91,6 +91,17 @@ def test_one_time_has_the_indices_of_that_number(oscillating, second_order):
         np.testing.assert_allclose(at[interval], scalar[f"{order}_interval"], rtol=1e-6)
 
 
+def test_a_time_at_which_the_runs_of_an_index_are_alike_leaves_that_index_undefined(oscillating):
+    """Warnings are errors here, as they would stand on the page of a notebook."""
+    runs = oscillating(256)
+    runs["contact_force"][:, 2] = 0.0
+    runs["contact_force"][3, 2] = 1.0  # of base sample B, in no index of total order
+    found = over_time.analysis(runs).isel(history=0, time=2)
+    assert found["total_order_over_time"].isnull().all()
+    assert found["history_deviation"] > 0
+    assert found["time_verdict"] == TimeVerdict.CONSTANT
+
+
 def test_base_samples_with_a_failed_run_are_left_out_and_counted(oscillating):
     runs = oscillating(256, second_order=True)
     table = runs["status"].values.reshape(256, -1)

@@ -70,6 +70,22 @@ def test_the_figure_has_values_above_and_differences_below(study):
     assert labels == ["Euler-Bernoulli", "Timoshenko", "3-D FE model", "slope −1/5"]
 
 
+def test_differences_are_told_in_sentences_that_the_caption_has(study, taken_apart):
+    runs, analysis = study[0].copy(deep=True), study[1]
+    runs["peak_force"].loc[{"beam_model": "timoshenko", "velocity": 5.0}] *= 1.1
+    force, _ = witness.findings(runs, analysis)
+    between = "Difference of the peak force from the 3-D FE model between 0.5 and 5 m/s: "
+    models = "5 % with Euler-Bernoulli and −2 to 7.8 % with Timoshenko"
+    assert force == f"{between}{models} (numerically ± 2.7 % or less)."
+    analysis = analysis.copy(deep=True)
+    analysis["nodes_uncertainty"].loc[{"velocity": 1.0}] = np.inf
+    force, _ = witness.findings(runs, analysis)
+    assert force == f"{between}{models} (numerically without a bound in part)."
+    assert force in FIGURES["witness"].caption(runs, analysis)
+    assert len(witness.findings(*taken_apart)) == 2
+    assert witness.findings(runs.isel(velocity=slice(2)), analysis) == []
+
+
 def test_points_without_a_bound_have_no_bar(study):
     runs, analysis = study[0], study[1].copy(deep=True)
     analysis["nodes_uncertainty"].loc[{"velocity": 1.0}] = np.inf

@@ -15,7 +15,7 @@ DEPTHS = [0.6, 1.0, 1.5, 10.0, 82.0, 83.0, 400.0]
 
 
 def written_out(x):
-    """F/F_y as physics.md prints it."""
+    """F/F_y as printed, with misprints put right."""
     u = 2 * x - 1
     if x <= 1:
         return x**1.5
