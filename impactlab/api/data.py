@@ -15,7 +15,7 @@ from impactlab.methods import INDICES, SAMPLES
 from impactlab.methods.distributions import CHOICE
 from impactlab.methods.hypercube import FEWEST_OF_WORD, Hypercube
 from impactlab.methods.record import Indices
-from impactlab.methods.table import Table as TableSample
+from impactlab.methods.sampling import Table as TableSample
 from impactlab.validation.errors import unknown
 from impactlab.validation.fields import LABEL
 

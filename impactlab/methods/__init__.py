@@ -22,8 +22,7 @@ from impactlab.methods.grid import Grid
 from impactlab.methods.hypercube import Hypercube
 from impactlab.methods.record import Family, Indices
 from impactlab.methods.runs import Sample
-from impactlab.methods.sampling import RandomSample, Sampling
-from impactlab.methods.table import Table
+from impactlab.methods.sampling import RandomSample, Sampling, Table
 from impactlab.validation.fields import name_at
 
 for _module in iter_modules([str(Path(__file__).parent)]):

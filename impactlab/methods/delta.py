@@ -19,7 +19,6 @@ Gamboa et al. (2022). Neighbours share hardly any noise, so that few runs do not
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -163,30 +162,16 @@ def _judge(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
 INDICES = Indices("delta", _VARIABLES, FAMILY, Sample.ungrouped, _estimate, _judge, fewest=64)
 
 
-@dataclass(frozen=True, kw_only=True)
 class Delta(Hypercube):
     """A Latin hypercube for Borgonovo's delta.
 
-    Parameters
-    ----------
-    parameters : mapping of str to distribution or Quantity
-        Distribution, or one fixed value, by name of the parameter.
-    seed : int, default 1
-        Equal seeds give equal runs.
-    samples : int
-        Number of runs, at least 64.
-    correlations : sequence of (str, str, float), optional
-        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
-        pairs are independent.
+    {arguments}
 
     References
     ----------
     Plischke et al. (2013), Eur. J. Oper. Res. 226, 536, eqs. 26 and 30.
 
-    Examples
-    --------
-    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
-    >>> sample = il.Delta(samples=128, parameters={"velocity": speed, "beam_depth": depth})
+    {example}
     """
 
     records = (INDICES,)

@@ -27,7 +27,21 @@ Correlations = Sequence[tuple[str, str, float]]
 _LEAST = 1e-8  # smallest eigenvalue of a matrix that counts as positive definite
 FEWEST_OF_WORD = 20
 """Runs per word: bootstrap resamples then practically never hold fewer than two."""
-
+_ARGUMENTS = """Parameters
+    ----------
+    parameters : mapping of str to distribution or Quantity
+        Distribution, or one fixed value, by name of the parameter.
+    seed : int, default 1
+        Equal seeds give equal runs.
+    samples : int
+        Number of runs, at least {fewest}.
+    correlations : sequence of (str, str, float), optional
+        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
+        pairs are independent."""
+_EXAMPLE = """Examples
+    --------
+    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
+    >>> sample = il.{method}(samples=128, parameters={{"velocity": speed, "beam_depth": depth}})"""
 
 _Triple = tuple[StrictStr, StrictStr, Annotated[Number, Field(gt=-1, lt=1)]]
 
@@ -51,6 +65,13 @@ class Hypercube(DrawnTogether):
     even = True
     samples: Annotated[Whole, Field(le=MOST_RUNS)]
     correlations: Annotated[Correlations, PlainValidator(_read_triples)] = ()
+
+    def __init_subclass__(cls) -> None:
+        """Fill in what the docstrings of the methods share."""
+        super().__init_subclass__()
+        fewest = max((indices.fewest for indices in cls.records), default=0)
+        text = (cls.__doc__ or "").replace("{arguments}", _ARGUMENTS.format(fewest=fewest))
+        cls.__doc__ = text.replace("{example}", _EXAMPLE.format(method=cls.__name__))
 
     @property
     def runs(self) -> int:

@@ -352,3 +352,10 @@ class Grouped(RandomSample):
                     continue
                 raise at_key(f"groups.{group}.{index}", reason)
         return self
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table(RandomSample):
+    """Rows of a design made elsewhere, or of measurements, each a draw of its own."""
+
+    label = "table"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import xarray as xr
@@ -122,6 +122,11 @@ def wide(*margins: Floats) -> list[SensitivityVerdict]:
     """Return the verdict on half-widths of intervals of shares: empty unless one is wide."""
     narrow = all((margin <= WIDE).all() for margin in margins)
     return [] if narrow else [SensitivityVerdict.WIDE_INTERVALS]
+
+
+def by_width(name: str) -> Callable[[Mapping[str, Floats]], list[SensitivityVerdict]]:
+    """Return what judges an index that is a share by the width of its interval alone."""
+    return lambda indices: wide(indices[f"{name}_interval"])
 
 
 def of_orders(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
