@@ -26,10 +26,9 @@ from impactlab.solver import (
 from impactlab.solver.contact import NUMBERED
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
-from impactlab.solver.growth import by_strike
 from impactlab.solver.jit import FOLDER
 from impactlab.solver.kernels import is_extended, kernel_of
-from impactlab.solver.outputs import DIVERGED, SERIES, blank
+from impactlab.solver.outputs import DIVERGED, SERIES, blank, by_strike
 from impactlab.solver.section import FibreSection, make_section
 from impactlab.solver.several_spheres import Table, make_table
 from impactlab.solver.types import VON_KARMAN

@@ -16,8 +16,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Column, Table
 
-from impactlab.fem3d.figures.motion import animation
-from impactlab.fem3d.figures.run import draw_witness
+from impactlab.fem3d.figures.run import animation, draw_witness
 from impactlab.fem3d.page import write_comparison
 from impactlab.fem3d.plan import RunPlan, beam_models
 from impactlab.fem3d.solver import solve_on

@@ -40,7 +40,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from impactlab.model.further_spheres import sphere_rows
+from impactlab.model.bodies import sphere_rows
 from impactlab.model.impact import OTHER_SECTION, Impact
 from impactlab.model.shapes import Rectangle
 from impactlab.solver import RESISTANCES

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from impactlab.model.cross_section import Section
-from impactlab.model.integration import gauss
+from impactlab.model.discretisation import gauss
 from impactlab.types import Floats
 
 LEAST_FIBRES = 2

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from impactlab.model.cross_section import Section
-from impactlab.model.integration import integration_rule
+from impactlab.model.discretisation import integration_rule
 from impactlab.types import Floats
 
 _PI = math.pi

@@ -13,7 +13,7 @@ from impactlab.figures.access import design_dims, usable
 from impactlab.figures.labels import display
 from impactlab.figures.strikes import DENT, longest, strike_series
 from impactlab.report.page import Cell, Entry, Row, Section, Table
-from impactlab.solver.growth import NO_GROWTH
+from impactlab.solver.outputs import NO_GROWTH
 from impactlab.types import Floats
 
 _DEFLECTION, _RESTITUTION = "residual_deflection_over_strikes", "restitution_over_strikes"

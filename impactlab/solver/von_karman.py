@@ -62,12 +62,12 @@ from impactlab.solver.section import (
     FibreSection,
     cut_whole_section,
     make_whole_room,
+    strain_fibres,
 )
 from impactlab.solver.settle import ROUNDS, rest_nodes
 from impactlab.solver.settle_stretch import static_axis, static_stretch
 from impactlab.solver.state import BeamModel, State
 from impactlab.solver.strain_rate import RateLaw
-from impactlab.solver.stretched_fibres import strain_fibres
 from impactlab.solver.types import ONE, Array, Record
 
 _SMALL = 1e-9

@@ -15,7 +15,7 @@ import xarray as xr
 from impactlab.methods.grid import Grid
 from impactlab.methods.runs import listed
 from impactlab.methods.sobol import Sobol
-from impactlab.model.further_spheres import sphere_rows
+from impactlab.model.bodies import sphere_rows
 from impactlab.model.parameters import fixed_values, with_values
 from impactlab.study.schema.consistency import further_models, values_of
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy, ImpactStudy

@@ -14,9 +14,9 @@ from impactlab.methods.distributions import Choice, Distribution
 from impactlab.methods.grid import Grid
 from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
+from impactlab.model.bodies import sphere_rows
 from impactlab.model.case_table import MODAL_DAMPING, NO_INTERVAL, TOO_SOON, between_nodes
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
-from impactlab.model.further_spheres import sphere_rows
 from impactlab.model.impact import (
     DAMPED_BEAM,
     FOUNDED_BEAM,
