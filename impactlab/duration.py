@@ -1,7 +1,5 @@
 """Durations that end before a run can give its responses."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

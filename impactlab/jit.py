@@ -17,8 +17,6 @@ numba's public options, which takes longer and gives the same bits: what is summ
 in a second copy (`summing` in solver/jit.py) is then inlined.
 """
 
-from __future__ import annotations
-
 import hashlib
 import logging
 import os

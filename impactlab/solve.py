@@ -1,7 +1,5 @@
 """The kernels' one door: a case table goes in, arrays of answers come out."""
 
-from __future__ import annotations
-
 import itertools
 import pickle
 from collections.abc import Iterable

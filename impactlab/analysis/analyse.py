@@ -7,8 +7,6 @@ replicates of the sample tell what is left of it. Elsewhere it is bounded by the
 responses, as if none of it were common to all runs.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pkgutil import resolve_name
 from typing import Any

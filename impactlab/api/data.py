@@ -1,7 +1,5 @@
 """Runs from a table: a design made elsewhere, or measurements, for the indices of given data."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 from typing import Any

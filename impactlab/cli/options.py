@@ -1,7 +1,5 @@
 """Arguments that commands share, and how their texts are read."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Collection
 from pathlib import Path

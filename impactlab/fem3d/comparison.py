@@ -1,7 +1,5 @@
 """A 3-D run beside the beam models: solved, compared, written to files, drawn and printed."""
 
-from __future__ import annotations
-
 import tempfile
 from contextlib import AbstractContextManager
 from dataclasses import replace

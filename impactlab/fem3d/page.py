@@ -1,7 +1,5 @@
 """The report of one 3-D run beside the beam models, which the index of all results lists."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

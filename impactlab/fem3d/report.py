@@ -1,7 +1,5 @@
 """Report sections: the beam models beside the 3-D FE model, one table per response."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

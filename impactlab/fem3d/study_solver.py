@@ -5,8 +5,6 @@ What a run does not depend on is zero in it, so that runs which differ in that a
 The rules of such a study and of its convergence come last.
 """
 
-from __future__ import annotations
-
 import hashlib
 import logging
 import time

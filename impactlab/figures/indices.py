@@ -3,8 +3,6 @@
 Morris (1991), Technometrics 33, 161; µ* after Campolongo et al. (2007), Environ. Modell. Softw. 22.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -3,8 +3,6 @@
 Force is shown in kN, time in ms, lengths in mm or µm, strain in %.
 """
 
-from __future__ import annotations
-
 import math
 import textwrap
 from collections.abc import Iterable, Sequence

@@ -1,7 +1,5 @@
 """The one judgement of a convergence study: of answer, figures, captions and tables alike."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar

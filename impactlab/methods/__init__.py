@@ -5,8 +5,6 @@ with its draws, and the record of its indices: variables, estimator, figure and 
 classes with a label here are methods; a line in impactlab/__init__.pyi makes one public.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from importlib import import_module
 from pathlib import Path

@@ -16,8 +16,6 @@ The first order is the covariance of neighbours among the runs in the order of t
 Gamboa et al. (2022). Neighbours share hardly any noise, so that few runs do not bias it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

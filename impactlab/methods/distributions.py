@@ -5,8 +5,6 @@ runs.nc, whose other attributes do not matter here. A new one is a class here, a
 impactlab/__init__.pyi.
 """
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields

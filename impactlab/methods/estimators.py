@@ -6,8 +6,6 @@ weighted by how often each row was drawn, so that all resamples together are one
 Bootstrap, sections 6.2 and 20.2.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np

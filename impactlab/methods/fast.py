@@ -8,8 +8,6 @@ the spectrum are counted into the total order of each; the dummy shows how much 
 index is added to the half-widths.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated, Any, Self
 

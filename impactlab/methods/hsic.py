@@ -12,8 +12,6 @@ p-value is the share of shuffles with a larger criterion: below 0.05, dependence
 noise. Target indices (Marrel and Chabridon 2021) are those of whether the limit is exceeded.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -4,8 +4,6 @@ Rank correlations between parameters are those of a Gaussian copula: their distr
 stated. A method has one index; `Latin` has several.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

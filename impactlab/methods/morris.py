@@ -1,7 +1,5 @@
 """Morris' elementary effects: a screening, cheap but without shares of the variance."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Self

@@ -8,8 +8,6 @@ is what shuffles stay below. The slides of a parameter that takes words are the 
 median is that over the runs.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 

@@ -8,8 +8,6 @@ of the noise that the terms fit. A response that jumps has harmonics without end
 about what the second half of the others adds, so that the interval is wider by that, times SAFETY.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import scipy  # its stats are loaded when first used
 

@@ -1,7 +1,5 @@
 """Standardised regression coefficients, on values and on ranks: signed, but linear or monotone."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

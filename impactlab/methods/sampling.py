@@ -1,7 +1,5 @@
 """Base classes of methods of sampling: sections `sampling` of a study, and objects in Python."""
 
-from __future__ import annotations
-
 import logging
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence

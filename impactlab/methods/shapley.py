@@ -17,8 +17,6 @@ that neighbours some way off make falls slowly with the runs, so that it is abou
 halves of the sample to the whole; the interval adds that, times SAFETY.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Sobol indices of first, second and total order from Saltelli's sample."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Self

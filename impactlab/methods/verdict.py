@@ -1,7 +1,5 @@
 """Verdicts on sensitivity indices, as a sceptical reader would judge them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np

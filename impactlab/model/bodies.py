@@ -1,7 +1,5 @@
 """The bodies of an impact: spheres, and a beam with its section and its ends."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

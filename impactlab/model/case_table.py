@@ -1,7 +1,5 @@
 """The case table: impacts as the records that the kernels take, one per run."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any

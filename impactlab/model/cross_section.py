@@ -8,8 +8,6 @@ n = 2 on its area, its full plastic moment and its bending stiffness, on any sha
 their exact area and first moment each. An odd point lies on the axis, without area.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import lru_cache

@@ -4,8 +4,6 @@ Quantities are numbers in SI units, strings with a unit ("27.8 mm") or quantitie
 hold SI numbers.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 

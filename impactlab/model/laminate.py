@@ -14,8 +14,6 @@ Source: the transformed section of composite beams (Gere and Goodno, Mechanics o
 
 # ruff: noqa: D102 - a shape's methods are documented once, in Section
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache

@@ -7,8 +7,6 @@ do not.
 
 # ruff: noqa: D102 - a shape's methods are documented once, in Section
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """Findings of a calibration in sentences: the answer first, then what it rests on."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import combinations
 from pathlib import Path

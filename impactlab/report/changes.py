@@ -1,7 +1,5 @@
 """Sentences on changes between studies: shares of parameters, or responses of grids."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

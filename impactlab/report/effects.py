@@ -1,7 +1,5 @@
 """Effects of a grid's parameters on its responses, in sentences: direction, size, jump, or none."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterator
 from itertools import product

@@ -1,7 +1,5 @@
 """Reports beside those of studies, such as of a calibration: each tells the index of itself."""
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """Pages from templates: the records that they print, where the numbers come from, how to cite."""
 
-from __future__ import annotations
-
 import base64
 import csv
 import math

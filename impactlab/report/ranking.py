@@ -1,7 +1,5 @@
 """The parameters that matter in a sample, in sentences."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

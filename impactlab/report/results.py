@@ -1,7 +1,5 @@
 """Stored results of a study: their kinds, how each is drawn and reported, and an index of all."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager

@@ -4,8 +4,6 @@ One parameter ranks before another only where their intervals, with the numerica
 overlap.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """Repeated strikes in the answer and in a table: what they leave, and when that no longer grows."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import product
 

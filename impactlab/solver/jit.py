@@ -1,7 +1,5 @@
 """The decorators of this solver's kernels (see impactlab.jit), and their sources' hash."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from impactlab.jit import Compiler

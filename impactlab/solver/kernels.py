@@ -3,8 +3,6 @@
 Each is compiled by itself, so that a study compiles only what it needs.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from threading import Lock
 from typing import Any

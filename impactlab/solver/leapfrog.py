@@ -4,8 +4,6 @@ m_s w_s'' = -F + m_s g, w_s(0) = 0, w_s'(0) = v0; indentation delta = w_s - w(L/
 mean under the contact's pressure (contact_patch.py).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

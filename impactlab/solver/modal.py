@@ -27,8 +27,6 @@ step has the eigenvalues of D^(1/2) (1 - Pi) D^(1/2), which lie between 0 and 2.
 Source: W. Gautschi, Numer. Math. 3 (1961) 381; Hochbruck, Lubich, Numer. Math. 83 (1999) 403.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.beam import BeamGrid, copies, is_end

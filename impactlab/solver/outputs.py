@@ -7,8 +7,6 @@ Of repeated strikes, a quantity y does not grow from strike m on if |y_n - y_(n-
 |y_n|, but for round-off, for all n from m to the last one; compiled kernels fill in the series.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

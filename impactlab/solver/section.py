@@ -13,8 +13,6 @@ hardening (Simo and Hughes, Computational Inelasticity, box 1.5). Where the sect
 fibres yield under both strains together.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

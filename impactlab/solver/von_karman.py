@@ -27,8 +27,6 @@ Source: T. von Karman, Encyklopaedie der mathematischen Wissenschaften IV/4 (191
 Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35 (both recalled).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Designs: the coordinates of all runs of a study, and larger ones of the same study."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from math import prod

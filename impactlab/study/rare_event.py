@@ -1,7 +1,5 @@
 """The probability of a rare event from runs of a study's solver, kept and found again on disk."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Base class of the sections of a study file, types of their values, and messages."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial

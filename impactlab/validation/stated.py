@@ -5,8 +5,6 @@ parameters of a study as context, it holds checked values in SI units. `Study` r
 the objects that it is given.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import MISSING, fields

@@ -1,7 +1,5 @@
 """Impacts that more than one check uses, and the solver's grid for them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 

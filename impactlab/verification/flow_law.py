@@ -1,7 +1,5 @@
 """Checks of a flow law from outside, and its numbers for steel."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any
 

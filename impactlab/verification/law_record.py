@@ -6,8 +6,6 @@ prints them as lines of the record of law NAME in solver/contact/__init__.py. A 
 listed there first, if only with its texts. All is for steel: E* = 115 GPa, S_y = 345 MPa, nu = 0.3.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from dataclasses import fields, replace

@@ -1,7 +1,5 @@
 """The beam bent slowly and beyond yield: section, static load, collapse, and one plastic hinge."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

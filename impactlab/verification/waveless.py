@@ -3,8 +3,6 @@
 Half-space: a beam too heavy to move.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

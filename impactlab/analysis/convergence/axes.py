@@ -7,8 +7,6 @@ given. Source: Bazant and Planas (1998), Fracture and Size Effect, ch. 8 (locali
 materials that do not harden).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial

@@ -11,8 +11,6 @@ that have a sound verdict (1,500 draws of each; three grids of ratio 2: orders 1
 noise 93, 92 and 94 %, noise alone 95 %).
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -6,8 +6,6 @@ Symbols: f values, h spacings, n grids; f0 the limit, eps = |f - f0| of the fitt
 standard deviation of the fit, delta the data range over n - 1.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

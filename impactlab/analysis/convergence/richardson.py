@@ -9,8 +9,6 @@ Symbols: h1 < h2 < h3 grid spacings, f1, f2, f3 the values there, r21 = h2/h1, r
 e21 = f2 - f1, e32 = f3 - f2, p the observed order, s = sign(e32/e21).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import partial

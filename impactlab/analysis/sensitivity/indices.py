@@ -1,7 +1,5 @@
 """Sensitivity indices of a sample; where runs failed, a surrogate supplies their values."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -12,8 +12,6 @@ kept, which is all that indices and intervals need, for as many times together a
 allows.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Figures of a 3-D run: mesh, plastic strain about the contact, histories, and a moving picture."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

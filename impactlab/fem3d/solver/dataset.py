@@ -1,7 +1,5 @@
 """One impact on one mesh, solved and returned as a dataset, with snapshots of it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

@@ -16,8 +16,6 @@ Source: the assumed strains follow T. Belytschko and L. P. Bindeman, Comput. Met
 Engng. 105 (1993) 225; the projection D. P. Flanagan and T. Belytschko (1981).
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.fem3d.solver.compiler import Array, compiled, inlined

@@ -20,8 +20,6 @@ Source of the mean gradient: D. P. Flanagan and T. Belytschko, Int. J. Numer. Me
 679; written here in modes.
 """
 
-from __future__ import annotations
-
 from impactlab.fem3d.solver.compiler import Array, inlined
 
 W = 16  # lanes of a block

@@ -3,8 +3,6 @@
 A quarter of both where the beam is held alike at both ends and struck in its middle; else a half.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -9,8 +9,6 @@ comes before the largest indentation. A sphere that leaves faster than 2/(3 alph
 back: contact_damping.py makes that force zero.
 """
 
-from __future__ import annotations
-
 from impactlab.solver.contact.hertz import curve as curve
 from impactlab.solver.contact.hertz import limit as limit
 from impactlab.solver.contact.hertz import radius as radius

@@ -1,7 +1,5 @@
 """Checks between the sections of a study of impacts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Readers of measurements: files measurements/NAME.yaml, or mappings with the same keys."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path

@@ -25,8 +25,6 @@ Mode approximations for impulsively loaded rigid-plastic structures, J. Eng. Mec
 (1966); Jones, Structural Impact (1989), chapter 3.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

@@ -6,8 +6,6 @@ form, too. Functions of plain numbers, all in SI: indentation d (m), effective m
 radius R (m), the softer body's yield stress S (Pa) and Poisson's ratio nu.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

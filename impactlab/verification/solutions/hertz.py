@@ -10,8 +10,6 @@ At the deepest point v is zero; at the end d is, and v = -s/a with the same (1 -
 (1 + r) exp(-r) at the beginning, r = a v_0, which Lambert's W solves.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
