@@ -80,17 +80,7 @@ def runs_of_table(
     parameters = {str(name): np.asarray(inputs[name]) for name in inputs}
     responses = {str(name): np.asarray(outputs[name]) for name in outputs}
     rows = _check_shape(parameters, responses)
-    if fewest := [record for record in records if rows < record.fewest]:
-        raise ValueError(
-            f"{title}: {rows} rows are too few for {fewest[0].name}: give {fewest[0].fewest} or "
-            "more"
-        )
-    for record in records:
-        if record.most and len(parameters) > record.most:
-            raise ValueError(
-                f"{title}: {len(parameters)} inputs are too many for {record.name}: give at most "
-                f"{record.most}"
-            )
+    _check_size(records, title, rows, len(parameters))
     order = np.random.default_rng(seed).permutation(rows)
     columns = {
         name: ("run", *_column(name, values, records, order)) for name, values in parameters.items()
@@ -129,6 +119,19 @@ def _records(indices: str | Sequence[str]) -> list[Indices]:
         if names.count(name) > 1:
             raise ValueError(f"indices names {name} more than once: name it once")
     return [INDICES[name] for name in names]
+
+
+def _check_size(records: list[Indices], title: str, rows: int, inputs: int) -> None:
+    for record in records:
+        if rows < record.fewest:
+            raise ValueError(
+                f"{title}: {rows} rows are too few for {record.name}: give {record.fewest} or more"
+            )
+        if record.most and inputs > record.most:
+            raise ValueError(
+                f"{title}: {inputs} inputs are too many for {record.name}: give at most "
+                f"{record.most}"
+            )
 
 
 def _check_shape(inputs: dict[str, NDArray[Any]], outputs: dict[str, NDArray[Any]]) -> int:

@@ -15,10 +15,10 @@ from impactlab.cli import stop_solving
 from impactlab.cli.options import (
     RunsFile,
     StudyFile,
+    argument,
     chosen,
     given,
     new_file,
-    stored_in,
     study_or_design,
 )
 
@@ -267,10 +267,8 @@ def refine(
 def verify(
     study: Annotated[
         Path,
-        typer.Argument(
-            metavar="STUDY",
-            help="A study file of checks, its findings.nc, or results/NAME.",
-            callback=stored_in("findings.nc"),
+        argument(
+            "STUDY", "A study file of checks, its findings.nc, or results/NAME.", "findings.nc"
         ),
     ],
     output: Annotated[

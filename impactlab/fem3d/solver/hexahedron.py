@@ -114,6 +114,27 @@ Shape = tuple[Vector, Vector, Vector, Vector, Vector, Vector, Vector]
 
 
 @inlined
+def load_modes(s: Array, row: int, lane: int) -> Shape:
+    """Return the seven vectors in rows from `row` on."""
+    return (
+        load(s, row, lane),
+        load(s, row + 3, lane),
+        load(s, row + 6, lane),
+        load(s, row + 9, lane),
+        load(s, row + 12, lane),
+        load(s, row + 15, lane),
+        load(s, row + 18, lane),
+    )
+
+
+@inlined
+def store_modes(s: Array, row: int, lane: int, f: Shape) -> None:
+    """Store seven vectors in rows from `row` on."""
+    for mode in range(7):
+        store(s, row + 3 * mode, lane, f[mode])
+
+
+@inlined
 def modes(s: Array, row: int, lane: int) -> Modes:
     """Return c_1, c_2, c_3, g_1, g_2, g_3, g_4 of the values in rows row, row + 3, ... row + 21."""
     first = row * W + lane
