@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.convergence import axes
-from impactlab.fem3d.study_solver import ELEMENT_SIZE
+from impactlab.fem3d.study_rules import ELEMENT_SIZE
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import flatten

@@ -19,10 +19,9 @@ from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL, estimate
 from impactlab.analysis.sensitivity.indices import imputed
 from impactlab.methods import sobol
-from impactlab.methods.estimators import half_width
-from impactlab.methods.runs import Sample, in_order, labels, listed, usable
+from impactlab.methods.record import still, tail, with_numerical_error
+from impactlab.methods.runs import Sample, half_width, in_order, labels, listed, usable
 from impactlab.methods.saltelli import Outputs, estimates
-from impactlab.methods.verdict import still, tail, with_numerical_error
 from impactlab.types import Floats
 from impactlab.variables import of_function
 from impactlab.verdicts import ROUND_OFF, Verdict, flagged

@@ -9,8 +9,7 @@ from impactlab.fem3d.plan import RunPlan
 from impactlab.fem3d.wing import SOLID, UNLIKE
 from impactlab.figures import labels
 from impactlab.figures.labels import display
-from impactlab.report.listed import write_listed
-from impactlab.report.page import Cell, Row, Section, Table
+from impactlab.report.page import Cell, Row, Section, Table, write_listed
 from impactlab.variables import reasons
 
 _JUDGED = ("peak_force", "contact_duration", "maximum_indentation", "maximum_deflection")

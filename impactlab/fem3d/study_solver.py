@@ -2,7 +2,6 @@
 
 The record of a run is that of the kernels (solver.types.CASE) with the size of the solid elements.
 What a run does not depend on is zero in it, so that runs which differ in that alone are one case.
-The rules of such a study and of its convergence come last.
 """
 
 import hashlib
@@ -17,7 +16,6 @@ import numpy as np
 import xarray as xr
 from numpy.lib.recfunctions import require_fields
 
-from impactlab.analysis.convergence.axes import Axis, Growth
 from impactlab.fem3d.plan import MOST_TIME, cost_of
 from impactlab.fem3d.solver import Cost, impact_mesh
 from impactlab.fem3d.solver import solve as solve_alone
@@ -25,8 +23,7 @@ from impactlab.fem3d.solver.compiler import COMPILER
 from impactlab.fem3d.solver.dataset import IMPACT_PARAMETERS
 from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.fem3d.solver.evaluation import plastic_reach
-from impactlab.fem3d.wing import MODEL, SIZES, SOLID, VARIABLES
-from impactlab.methods.grid import Grid
+from impactlab.fem3d.wing import SIZES, SOLID, VARIABLES
 from impactlab.methods.runs import listed
 from impactlab.model import cost
 from impactlab.model.case_table import case_table
@@ -36,11 +33,9 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import DAMPED_BEAM, OTHER_SECTION, Impact, paper_impact
 from impactlab.model.parameters import with_values
 from impactlab.solve import solve as solve_cases
-from impactlab.solver import BEAM_MODELS, DAMPINGS, FLOW_LAWS, SUPPORTS, outputs
+from impactlab.solver import BEAM_MODELS, DAMPINGS, FLOW_LAWS, SUPPORTS
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.solver.types import CASE
-from impactlab.study.schema.consistency import Reasons, size_keys
-from impactlab.study.schema.declarations import StudyFile
 from impactlab.study.shard import Array, Columns
 from impactlab.study.solvers import flattened, kernels, run_number, run_shape
 from impactlab.study.store import OutputSpec
@@ -246,40 +241,3 @@ SOLVER = replace(
     solve=solve,
     labelled=labelled,
 )
-
-
-ELEMENT_SIZE = Axis(
-    MODEL.axis,
-    "the element size",
-    dict(zip(SIZES, (lambda size: size, lambda count: 1.0 / count), strict=True)),
-    lambda runs: (
-        "The elements of the 3-D model shrink about the contact, and the time step with them; "
-        "beyond they keep their largest size. Models of the beam do not know the element size, and "
-        "agree."
-    ),
-    Growth(
-        "in the contact of a solid, plastic strain gathers at the edge of the dent: its peak grows "
-        "as the elements shrink",
-        lambda runs: runs["beam_model"] == SOLID,
-    ),
-)
-"""The size of the solid elements about the contact."""
-
-
-def reasons(file: StudyFile) -> Reasons:
-    """Check that the runs have one element size, and what else the 3-D model requires."""
-    model, sizes = f"beam_model: {MODEL.name}", size_keys(file, MODEL)
-    if not sizes:
-        times = "runs with 1 mm take seconds, those with 0.5 mm a minute"
-        yield f"discretisation.{SIZES[0]}", f"is required for {model} ({times})"
-    for key in sizes[1:]:
-        yield key, f"has no effect beside {sizes[0]}: take one of them out"
-    if not isinstance(file.sampling, Grid):
-        yield "sampling.method", f"{model} needs method: grid, because a run takes minutes"
-    if file.discretisation[1] is not None:
-        yield "discretisation.auto", f"is not possible with {model}: state the discretisation"
-    if file.store.profiles:
-        yield "store.profiles", f"must be false with {model}, which has no profiles"
-    for entry in outputs.RESPONSES:
-        if entry.beam_models_only and entry.name in file.responses:
-            yield "responses", f"{entry.name} is not available with {model}: leave it out"

@@ -51,8 +51,8 @@ MODEL = FurtherModel(
     ),
     references={
         "solver": "impactlab.fem3d.study_solver:SOLVER",
-        "axis": "impactlab.fem3d.study_solver:ELEMENT_SIZE",
-        "checks": "impactlab.fem3d.study_solver:reasons",
+        "axis": "impactlab.fem3d.study_rules:ELEMENT_SIZE",
+        "checks": "impactlab.fem3d.study_rules:reasons",
         "costs": "impactlab.fem3d.study_solver",
         "figures": "impactlab.fem3d.figures.witness:FIGURES",
         "sections": "impactlab.fem3d.report:sections",

@@ -22,11 +22,16 @@ import numpy as np
 import numpy.typing as npt
 import scipy  # its stats are loaded when first used
 
-from impactlab.methods.estimators import apart_from_dummy, dummy_column
 from impactlab.methods.hypercube import Hypercube
-from impactlab.methods.record import Family, IndexVariable, Indices, Measure
-from impactlab.methods.runs import Sample
-from impactlab.methods.verdict import SensitivityVerdict, wide
+from impactlab.methods.record import (
+    Family,
+    IndexVariable,
+    Indices,
+    Measure,
+    SensitivityVerdict,
+    wide,
+)
+from impactlab.methods.runs import Sample, apart_from_dummy, dummy_column
 from impactlab.types import Floats
 
 GRID = 200  # places at which densities are compared

@@ -25,8 +25,15 @@ from pydantic import (
 
 from impactlab.model.quantities import Quantity, engineering
 from impactlab.types import Floats
-from impactlab.validation.fields import LABEL, Number, at_key, quantity, requires, value_type
-from impactlab.validation.stated import Stated
+from impactlab.validation.fields import (
+    LABEL,
+    Number,
+    Stated,
+    at_key,
+    quantity,
+    requires,
+    value_type,
+)
 
 _NEGLIGIBLE = 1e-40  # share of the draws beyond either end of a quadrature
 _PANELS, _NODES = 40, 40  # of Gauss and Legendre

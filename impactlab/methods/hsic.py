@@ -18,9 +18,16 @@ import numpy as np
 import scipy  # its stats are loaded when first used
 
 from impactlab.methods.hypercube import Hypercube
-from impactlab.methods.record import Family, IndexVariable, Indices, Measure
+from impactlab.methods.record import (
+    Family,
+    IndexVariable,
+    Indices,
+    Measure,
+    SensitivityVerdict,
+    by_width,
+    wide,
+)
 from impactlab.methods.runs import Sample, listed
-from impactlab.methods.verdict import SensitivityVerdict, by_width, wide
 from impactlab.types import Floats
 
 MOST = 2000

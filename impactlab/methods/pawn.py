@@ -11,11 +11,9 @@ median is that over the runs.
 import numpy as np
 import numpy.typing as npt
 
-from impactlab.methods.estimators import dummy_column
 from impactlab.methods.hypercube import Hypercube
-from impactlab.methods.record import Family, IndexVariable, Indices, Measure
-from impactlab.methods.runs import Sample
-from impactlab.methods.verdict import by_width
+from impactlab.methods.record import Family, IndexVariable, Indices, Measure, by_width
+from impactlab.methods.runs import Sample, dummy_column
 from impactlab.types import Floats
 
 SLIDES = 10  # classes of a parameter's values, as in SALib

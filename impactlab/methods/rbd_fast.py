@@ -11,12 +11,10 @@ about what the second half of the others adds, so that the interval is wider by 
 import numpy as np
 import scipy  # its stats are loaded when first used
 
-from impactlab.methods.estimators import apart_from_dummy, dummy_column
 from impactlab.methods.hypercube import Hypercube
-from impactlab.methods.record import IndexVariable, Indices
-from impactlab.methods.runs import Sample
+from impactlab.methods.record import IndexVariable, Indices, by_width
+from impactlab.methods.runs import Sample, apart_from_dummy, dummy_column
 from impactlab.methods.sobol import FAMILY
-from impactlab.methods.verdict import by_width
 from impactlab.types import Floats
 
 HARMONICS = 10  # least number; the root of the runs where that is more, to follow jumps

@@ -5,11 +5,16 @@ from collections.abc import Mapping
 import numpy as np
 import scipy  # its stats are loaded when first used
 
-from impactlab.methods.estimators import dummy_column, half_widths
 from impactlab.methods.hypercube import Hypercube
-from impactlab.methods.record import Family, IndexVariable, Indices, Measure
-from impactlab.methods.runs import Sample
-from impactlab.methods.verdict import SensitivityVerdict, wide
+from impactlab.methods.record import (
+    Family,
+    IndexVariable,
+    Indices,
+    Measure,
+    SensitivityVerdict,
+    wide,
+)
+from impactlab.methods.runs import Sample, dummy_column, half_widths
 from impactlab.types import Floats
 
 _2008 = "Saltelli et al. (2008), Global Sensitivity Analysis: The Primer, section 1.2.5"

@@ -17,8 +17,7 @@ from typing import Any
 import numpy as np
 import scipy  # its stats are loaded when first used
 
-from impactlab.methods.estimators import leave_one_out
-from impactlab.methods.runs import Sample
+from impactlab.methods.runs import Sample, leave_one_out
 from impactlab.types import Floats
 
 REPLICATES = 8

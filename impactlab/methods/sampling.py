@@ -25,8 +25,7 @@ from impactlab.methods.runs import Sample
 from impactlab.model.parameters import PROFILE_FIXED, SPHERES_FIXED, Parameter, Value
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown
-from impactlab.validation.fields import LABEL, Names, Whole, at_key, by_name, name_at
-from impactlab.validation.stated import Stated
+from impactlab.validation.fields import LABEL, Names, Stated, Whole, at_key, by_name, name_at
 
 MOST_RUNS = 2_000_000_000
 DRAWN_TOGETHER = 10_000_000

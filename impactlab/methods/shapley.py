@@ -26,9 +26,8 @@ import scipy  # its parts are loaded when first used
 from threadpoolctl import threadpool_limits
 
 from impactlab.methods.hypercube import Hypercube
-from impactlab.methods.record import Family, IndexVariable, Indices, Measure
+from impactlab.methods.record import Family, IndexVariable, Indices, Measure, by_width
 from impactlab.methods.runs import Sample
-from impactlab.methods.verdict import by_width
 from impactlab.types import Floats
 
 Mask = npt.NDArray[np.bool_]

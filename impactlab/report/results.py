@@ -17,8 +17,7 @@ from impactlab.files import check_source, checked, identity, opened, read_netcdf
 from impactlab.model.checks import did_you_mean
 from impactlab.report import study, verification
 from impactlab.report.answer import answers
-from impactlab.report.listed import listed_reports
-from impactlab.report.page import described, leading, write_page
+from impactlab.report.page import described, leading, listed_reports, write_page
 
 
 @dataclass(frozen=True)

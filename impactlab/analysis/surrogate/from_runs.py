@@ -28,9 +28,9 @@ from impactlab.analysis.surrogate.chaos import (
 )
 from impactlab.methods import SAMPLES
 from impactlab.methods.distributions import DISTRIBUTIONS, distribution_of
+from impactlab.methods.record import MOSTLY
 from impactlab.methods.runs import Sample, correlations, labels, listed, usable
 from impactlab.methods.sampling import RandomSample
-from impactlab.methods.verdict import MOSTLY
 from impactlab.types import Floats
 from impactlab.verdicts import ROUND_OFF, Verdict, distinct, flagged
 

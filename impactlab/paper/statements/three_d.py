@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from impactlab.analysis.convergence.judgement import numerical_uncertainty
-from impactlab.fem3d.study_solver import ELEMENT_SIZE
+from impactlab.fem3d.study_rules import ELEMENT_SIZE
 from impactlab.fem3d.wing import SIZES, SOLID
 from impactlab.figures import labels
 from impactlab.model.impact import paper_impact
