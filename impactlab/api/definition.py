@@ -1,12 +1,10 @@
 """A study as an object, for Python and notebooks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from impactlab.api.folder import StudyFolder
 from impactlab.files import replaced
@@ -162,7 +160,7 @@ class Study(StudyFolder):
         super().__init__(readers.study_of_content(name, content, Path("Study")), results)
 
     @classmethod
-    def from_yaml(cls, path: str | Path, *, results: str | Path = "results") -> Study:
+    def from_yaml(cls, path: str | Path, *, results: str | Path = "results") -> Self:
         """Read a study file.
 
         Parameters

@@ -3,10 +3,9 @@
 The verdicts are those of a sceptical reader.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 import xarray as xr
@@ -201,7 +200,7 @@ class IndexVariable:
     comment: str = ""
 
     @classmethod
-    def of_dummy(cls, long_name: str, estimator: str) -> IndexVariable:
+    def of_dummy(cls, long_name: str, estimator: str) -> Self:
         """Return the index of a dummy parameter, see `runs.dummy_column`."""
         return cls(long_name, estimator, (), comment="of a random column that the model never saw")
 

@@ -6,12 +6,10 @@ weighted by how often each row was drawn, so that all resamples together are one
 Bootstrap, sections 6.2 and 20.2.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import scipy  # its stats are loaded when first used
@@ -99,7 +97,7 @@ class Sample:
     settings: Mapping[Any, Any]
 
     @classmethod
-    def of(cls, runs: xr.Dataset) -> Sample:
+    def of(cls, runs: xr.Dataset) -> Self:
         """Return the sample of runs, from their coordinates and attributes."""
         return cls(
             parameters=tuple(listed(runs, "varied")),
