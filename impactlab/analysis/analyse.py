@@ -16,7 +16,7 @@ import xarray as xr
 
 from impactlab.analysis import ANALYSES
 from impactlab.analysis.convergence import points
-from impactlab.analysis.convergence.richardson import SAFETY_CREDIBLE, SAFETY_DOUBTFUL, estimate
+from impactlab.analysis.convergence.extrapolation import SAFETY_CREDIBLE, SAFETY_DOUBTFUL, estimate
 from impactlab.analysis.sensitivity.indices import imputed
 from impactlab.methods import sobol
 from impactlab.methods.record import still, tail, with_numerical_error

@@ -15,9 +15,8 @@ import numpy as np
 import xarray as xr
 
 from impactlab import wings
+from impactlab.analysis.convergence.extrapolation import Behaviour, Expansion
 from impactlab.analysis.convergence.judgement import AxisVerdict, How, Judgement, judge
-from impactlab.analysis.convergence.least_squares import Expansion
-from impactlab.analysis.convergence.richardson import Behaviour
 from impactlab.methods.runs import usable
 from impactlab.types import Floats
 from impactlab.verdicts import TOLERANCE, Verdict, flagged, verdict_variables
