@@ -58,7 +58,9 @@ def _answer(responses: xr.Dataset) -> tuple[str, list[tuple[str, str]]]:
         row = shares.sel(model=name).dropna("response")
         if name != SOLID and row.size:
             pairs = zip(row["response"].values.tolist(), row.values.tolist(), strict=True)
-            texts[name] = ", ".join(f"{labels.response(key)} {_signed(x)}" for key, x in pairs)
+            texts[name] = ", ".join(
+                f"{labels.response(key)} {labels.signed(x)}" for key, x in pairs
+            )
             distances[name] = float(np.abs(row).mean())
     if not texts:
         return "No response of the beam models can be compared with the 3-D FE model", []
@@ -66,11 +68,6 @@ def _answer(responses: xr.Dataset) -> tuple[str, list[tuple[str, str]]]:
     headline = f"The {labels.beam_model(closest)} model is closest to the 3-D FE model"
     entries = [(labels.beam_model(name), texts[name]) for name in others]
     return f"{headline}: {texts[closest]}", entries
-
-
-def _signed(share: float) -> str:
-    text = f"{labels.number(100.0 * share, 2)} %"
-    return text if share < 0 else f"+{text}"
 
 
 def _table(responses: xr.Dataset) -> Table:
@@ -85,7 +82,7 @@ def _table(responses: xr.Dataset) -> Table:
             if np.isnan(value):
                 cells.append(Cell("missing", "warning"))
             else:
-                detail = "" if np.isnan(share) else _signed(float(share))
+                detail = "" if np.isnan(share) else labels.signed(float(share))
                 cells.append(Cell(labels.number(float(value)), "number", detail))
         rows.append(
             [Cell(labels.title(name), "", UNLIKE.get(name, "")), unit.symbol or "–", *cells]

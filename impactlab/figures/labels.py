@@ -132,6 +132,12 @@ def percent(share: float, digits: int = 2) -> str:
     return "–" if math.isnan(share) else f"{number(100 * share, digits)} %"
 
 
+def signed(share: float) -> str:
+    """Return a relative change in per cent with its sign: "+1.5 %"."""
+    text = f"{number(100.0 * share, 2)} %"
+    return text if share < 0 else f"+{text}"
+
+
 def counted(number: int, noun: str) -> str:
     """Return a number of things: "1 check", "1,024 checks"."""
     return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
