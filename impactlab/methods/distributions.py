@@ -294,12 +294,10 @@ class Triangular(Distribution):
 
     Parameters
     ----------
-    low : Quantity
-        Lower end, in the parameter's unit.
+    low, high : Quantity
+        Ends of the range, in the parameter's unit.
     mode : Quantity
         Most probable value, in the parameter's unit.
-    high : Quantity
-        Upper end, in the parameter's unit.
 
     Examples
     --------
