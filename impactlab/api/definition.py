@@ -1,10 +1,12 @@
 """A study as an object, for Python and notebooks."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from html import escape
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 from impactlab.api.folder import StudyFolder
 from impactlab.files import replaced
@@ -160,7 +162,7 @@ class Study(StudyFolder):
         super().__init__(readers.study_of_content(name, content, Path("Study")), results)
 
     @classmethod
-    def from_yaml(cls, path: str | Path, *, results: str | Path = "results") -> Self:
+    def from_yaml(cls, path: str | Path, *, results: str | Path = "results") -> Study:
         """Read a study file.
 
         Parameters

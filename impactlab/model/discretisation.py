@@ -4,11 +4,12 @@ The rules on [-1, 1], with weights that sum to 2, are computed for any number of
 method on the Legendre polynomials; Gauss's rule is there for any discrete measure, too.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Self
 
 import numpy as np
 
@@ -87,7 +88,7 @@ class Discretisation:
         message = "must be in (0, 1]; above 1 the scheme is unstable or inaccurate"
         require(courant <= 1, "Discretisation", "courant", self.courant, message)
 
-    def resolved(self, beam_models: Iterable[str]) -> Self:
+    def resolved(self, beam_models: Iterable[str]) -> Discretisation:
         """Return a copy with the scheme that `auto` stands for.
 
         Parameters
