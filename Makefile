@@ -78,7 +78,9 @@ lint: $(MADE)-dev
 	$(BIN)/lint-imports
 	$(IN_VENV) snakemake --lint
 
+# Kernels first, at once: they share what they have in common.
 pytest: $(MADE)-dev
+	$(IN_VENV) impactlab compile --wings
 	$(IN_VENV) python -m pytest -n auto --dist worksteal $(PYTEST_ARGS)
 
 long: $(MADE)-dev

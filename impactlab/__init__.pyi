@@ -25,7 +25,7 @@ from .methods.fast import Fast as Fast
 from .methods.grid import Grid as Grid
 from .methods.hsic import Hsic as Hsic
 from .methods.hsic import TargetHsic as TargetHsic
-from .methods.latin import Latin as Latin
+from .methods.hypercube import Latin as Latin
 from .methods.morris import Morris as Morris
 from .methods.pawn import Pawn as Pawn
 from .methods.rbd_fast import RbdFast as RbdFast

@@ -6,8 +6,6 @@ them: in globals, in modules and in scopes around them. Those of Python, NumPy, 
 stay. Constants have the values that they had when the copy was made.
 """
 
-from __future__ import annotations
-
 import dis
 import sys
 from collections.abc import Callable, Iterator

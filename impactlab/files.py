@@ -4,8 +4,6 @@ A dataset's file carries a digest of each of its variables, made while they are 
 when they are read into memory, and the digests of what it was made from.
 """
 
-from __future__ import annotations
-
 import csv
 import json
 import math

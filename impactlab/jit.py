@@ -17,8 +17,6 @@ numba's public options, which takes longer and gives the same bits: what is summ
 in a second copy (`summing` in solver/jit.py) is then inlined.
 """
 
-from __future__ import annotations
-
 import hashlib
 import logging
 import os
@@ -240,12 +238,7 @@ class Compiler:
         self.folder = cache_folder(self.sources_hash)
 
     def decorator(
-        self,
-        *,
-        fastmath: Any = False,
-        inline: bool = False,
-        allocates: bool = False,
-        from_python: bool = False,
+        self, *, fastmath: Any = False, inline: bool = False, allocates: bool = False
     ) -> Callable[[Function], Function]:
         """Return a decorator that compiles functions; under NUMBA_DISABLE_JIT=1 it changes nothing.
 
@@ -253,8 +246,6 @@ class Compiler:
         callers, whose loops can then be vectorised. allocates: whether the functions may make or
         own arrays: then they have numba's counting of references (`_nrt`), which costs time at
         each call; others that make an array do not compile.
-        from_python: the functions are called from Python, too, so that they are kept with every
-        kernel that calls them.
         """
         jit: Any = numba.njit  # its types do not list `_nrt`
 
@@ -268,7 +259,7 @@ class Compiler:
             name = f"{function.__module__}.{function.__qualname__}"
             # In a process that compiles kernels, Python can call these alone, which alone are
             # kept: what makes the others ready for Python would take half of the time.
-            called = from_python or name in os.environ.get(_COMPILES, name).split()
+            called = name in os.environ.get(_COMPILES, name).split()
             if called:
                 _CALLED.add(function.__qualname__)
             private = {

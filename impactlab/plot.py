@@ -5,8 +5,6 @@ it. Those of indices draw a panel per response where none is named, and return a
 indices of FAST are Sobol indices.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any, Protocol
 

@@ -1,7 +1,5 @@
 """The provenance of datasets: versions, revision, time and processor."""
 
-from __future__ import annotations
-
 import os
 import platform
 import re

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from impactlab.duration import too_short
 from impactlab.model.case_table import NO_INTERVAL, case_table
 from impactlab.model.checks import instance, integer, positive
 from impactlab.model.discretisation import Discretisation
@@ -24,7 +23,7 @@ from impactlab.model.plausibility import (
 from impactlab.model.quantities import Quantity, as_text, engineering, in_si
 from impactlab.model.quantities import duration as duration_of
 from impactlab.provenance import provenance
-from impactlab.solve import fibre_section, profile_coordinates, solve
+from impactlab.solve import fibre_section, profile_coordinates, solve, too_short
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.stability import discretise
 from impactlab.variables import (
@@ -271,9 +270,8 @@ def simulate_many(
     lists = {name: _in_si(name, values) for name, values in varied.items()}
     dims, shape, columns = _combined(lists, combine)
     cases = case_table(impact, grid, duration=seconds, varied=columns)
-    if (cases["strikes"] == 1).all() and (
-        interval := cases["strike_interval"].max(initial=0.0)
-    ) > 0.0:
+    interval = cases["strike_interval"].max(initial=0.0)
+    if interval > 0.0 and (cases["strikes"] == 1).all():
         raise ValueError(f"strike_interval = {engineering(interval, 's')}: {NO_INTERVAL}")
     ends = {name: (min(values), max(values)) for name, values in lists.items() if len(values)}
     _warn(numbers(impact, grid) | ends)

@@ -12,7 +12,7 @@ from impactlab import wings
 from impactlab.law_texts import describe_laws
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver import outputs
-from impactlab.solver.growth import GROWING, NO_GROWTH
+from impactlab.solver.outputs import GROWING, NO_GROWTH
 from impactlab.solver.outputs import SHORT_PAUSE as SHORT_PAUSE
 
 if TYPE_CHECKING:

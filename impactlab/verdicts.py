@@ -1,7 +1,5 @@
 """Verdicts as CF flags: the conclusion of an analysis, one word per number."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 from typing import Self
 

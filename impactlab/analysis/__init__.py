@@ -1,7 +1,5 @@
 """Analyses of the runs of a study, and how far to trust them: from runs.nc to analysis.nc."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

@@ -7,11 +7,10 @@ intervals of a response hold together (Bonferroni), so that in 95 % of responses
 called one that is none.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Self
 
 import numpy as np
 import scipy  # its stats are loaded when first used
@@ -54,7 +53,7 @@ class _Estimates:
         response: str,
         measures: Sequence[str],
         parameters: Sequence[str],
-    ) -> _Estimates:
+    ) -> Self:
         """Return the estimates for these measures and parameters."""
         indices = analysis.sel(response=response, parameter=list(parameters))
         nothing = np.zeros(len(parameters))

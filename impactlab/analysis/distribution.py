@@ -10,8 +10,6 @@ that it could have. Mean, standard deviation and parameters beyond a limit are t
 that answered; distribution_verdict says where these differ from the others in a parameter.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
 from typing import Any

@@ -6,11 +6,10 @@ mixture of t distributions, which sharpens by stages to its share of the posteri
 prior (Hesterberg 1995); recalled, not read.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Self
 
 import numpy as np
 import scipy  # its stats and spatial are loaded when first used
@@ -54,7 +53,7 @@ class _Mixture:
     shares: Floats
 
     @classmethod
-    def of(cls, points: Floats, weights: Floats) -> _Mixture:
+    def of(cls, points: Floats, weights: Floats) -> Self:
         """Fit components to weighted points; weights (components, points) add up to the shares."""
         shares = weights.sum(axis=1)
         weights = weights / shares[:, np.newaxis]

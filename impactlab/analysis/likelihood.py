@@ -6,8 +6,6 @@ neighbouring conditions share, and the numerical uncertainty of the runs: Kenned
 of a fitted one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np

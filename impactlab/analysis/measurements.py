@@ -5,8 +5,6 @@ Measurement and model are compatible where their difference is no larger than th
 squares of both expanded uncertainties (k = 2), as in ASME V&V 20-2009. Both are recalled, not read.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -11,8 +11,6 @@ The jackknife over the pairs removes the bias of first order and includes that t
 Efron and Tibshirani (1993), An Introduction to the Bootstrap, chapter 11.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

@@ -3,8 +3,6 @@
 Weights of models are proportional to their evidence, times their probability before.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from typing import Any

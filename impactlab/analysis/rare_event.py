@@ -11,8 +11,6 @@ before it, so that it is unbiased, and stopping adds no error to its interval. T
 the last gives a second, independent estimate as a check.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -4,8 +4,6 @@ A response that jumps has no typical value: its mean may be a value that no run 
 its variance mostly tell how often it jumps.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray

@@ -7,8 +7,6 @@ the guess: their difference from it is interpolated with its uncertainty (krigin
 1989, Stat. Sci. 4, 409; recalled, not read). Each estimate is made at the best design so far.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Runs from a table: a design made elsewhere, or measurements, for the indices of given data."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 from typing import Any
@@ -15,7 +13,7 @@ from impactlab.methods import INDICES, SAMPLES
 from impactlab.methods.distributions import CHOICE
 from impactlab.methods.hypercube import FEWEST_OF_WORD, Hypercube
 from impactlab.methods.record import Indices
-from impactlab.methods.table import Table as TableSample
+from impactlab.methods.sampling import Table as TableSample
 from impactlab.validation.errors import unknown
 from impactlab.validation.fields import LABEL
 
@@ -82,17 +80,7 @@ def runs_of_table(
     parameters = {str(name): np.asarray(inputs[name]) for name in inputs}
     responses = {str(name): np.asarray(outputs[name]) for name in outputs}
     rows = _check_shape(parameters, responses)
-    if fewest := [record for record in records if rows < record.fewest]:
-        raise ValueError(
-            f"{title}: {rows} rows are too few for {fewest[0].name}: give {fewest[0].fewest} or "
-            "more"
-        )
-    for record in records:
-        if record.most and len(parameters) > record.most:
-            raise ValueError(
-                f"{title}: {len(parameters)} inputs are too many for {record.name}: give at most "
-                f"{record.most}"
-            )
+    _check_size(records, title, rows, len(parameters))
     order = np.random.default_rng(seed).permutation(rows)
     columns = {
         name: ("run", *_column(name, values, records, order)) for name, values in parameters.items()
@@ -131,6 +119,19 @@ def _records(indices: str | Sequence[str]) -> list[Indices]:
         if names.count(name) > 1:
             raise ValueError(f"indices names {name} more than once: name it once")
     return [INDICES[name] for name in names]
+
+
+def _check_size(records: list[Indices], title: str, rows: int, inputs: int) -> None:
+    for record in records:
+        if rows < record.fewest:
+            raise ValueError(
+                f"{title}: {rows} rows are too few for {record.name}: give {record.fewest} or more"
+            )
+        if record.most and inputs > record.most:
+            raise ValueError(
+                f"{title}: {inputs} inputs are too many for {record.name}: give at most "
+                f"{record.most}"
+            )
 
 
 def _check_shape(inputs: dict[str, NDArray[Any]], outputs: dict[str, NDArray[Any]]) -> int:

@@ -17,7 +17,7 @@ from impactlab.model.quantities import Quantity
 from impactlab.study.schema import readers, yaml_file
 from impactlab.study.solvers.own import Function, register
 from impactlab.validation.errors import Problem, StudyError
-from impactlab.validation.stated import plain
+from impactlab.validation.fields import plain
 
 
 class Study(StudyFolder):

@@ -1,7 +1,5 @@
 """A study beside measurements, comparison and calibration; and studies beside each other."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

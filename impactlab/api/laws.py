@@ -1,7 +1,5 @@
 """Registration of laws from outside the package."""
 
-from __future__ import annotations
-
 from impactlab.model.checks import require
 from impactlab.model.contact_law import ContactLaw
 from impactlab.model.flow_law import FlowLaw

@@ -3,8 +3,6 @@
 Heavy imports wait until a command needs them.
 """
 
-from __future__ import annotations
-
 import errno
 import gc
 import os

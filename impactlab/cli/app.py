@@ -1,7 +1,5 @@
 """The command `impactlab`: its commands and its log."""
 
-from __future__ import annotations
-
 import logging
 import warnings
 from pathlib import Path

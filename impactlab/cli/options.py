@@ -1,7 +1,5 @@
 """Arguments that commands share, and how their texts are read."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Collection
 from pathlib import Path
@@ -16,13 +14,18 @@ def stored_in(*names: str) -> Callable[[Path], Path]:
     names: of the files; the first one is taken where none is there, so that the error names it.
     """
 
-    def stored(value: Path) -> Path:
+    def path_in(value: Path) -> Path:
         if not value.is_dir():
             return value
         files = [value / name for name in names]
         return next(filter(Path.exists, files), files[0])
 
-    return stored
+    return path_in
+
+
+def argument(metavar: str, help: str, *names: str) -> Any:
+    """Return an argument for a file of results, or for the folder that holds it."""
+    return typer.Argument(metavar=metavar, help=help, callback=stored_in(*names))
 
 
 def all_stored(values: list[Path]) -> list[Path]:
@@ -63,12 +66,7 @@ StudyFile = Annotated[
     ),
 ]
 RunsFile = Annotated[
-    Path,
-    typer.Argument(
-        metavar="RUNS",
-        help="Solved runs, results/NAME/runs.nc, or results/NAME.",
-        callback=stored_in("runs.nc"),
-    ),
+    Path, argument("RUNS", "Solved runs, results/NAME/runs.nc, or results/NAME.", "runs.nc")
 ]
 RESULTS = Path("results")
 

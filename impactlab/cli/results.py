@@ -15,12 +15,12 @@ from impactlab.cli.options import (
     RunsFile,
     StudyFile,
     all_stored,
+    argument,
     assigned,
     chosen,
     given,
     new_file,
     new_folder,
-    stored_in,
 )
 
 if TYPE_CHECKING:
@@ -65,11 +65,7 @@ def analyse(
 def predict(
     surrogate: Annotated[
         Path,
-        typer.Argument(
-            metavar="SURROGATE",
-            help="results/NAME/surrogate.nc, or results/NAME.",
-            callback=stored_in("surrogate.nc"),
-        ),
+        argument("SURROGATE", "results/NAME/surrogate.nc, or results/NAME.", "surrogate.nc"),
     ],
     values: Annotated[
         list[str],
@@ -349,10 +345,10 @@ def size(
 def animate(
     stored: Annotated[
         Path,
-        typer.Argument(
-            metavar="STORED",
-            help="Output of `impactlab simulate`, a study's runs.nc, or results/NAME.",
-            callback=stored_in("runs.nc"),
+        argument(
+            "STORED",
+            "Output of `impactlab simulate`, a study's runs.nc, or results/NAME.",
+            "runs.nc",
         ),
     ],
     values: Annotated[

@@ -71,10 +71,9 @@ def simulate(
     values |= _settings(settings or [])
     seconds = float(values.pop("duration"))
     impact, grid = _checked(base, values)
-    from impactlab.duration import too_short
     from impactlab.model.case_table import case_table
     from impactlab.simulate import simulate as solve_one
-    from impactlab.solve import solve
+    from impactlab.solve import solve, too_short
 
     cases = case_table(impact, grid, duration=seconds)
     answers: Any

@@ -1,7 +1,5 @@
 """Study files, their runs on disk, and projects to begin with."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Annotated

@@ -162,7 +162,7 @@ def _solve(plan: RunPlan, folder: Path, workers: int, animate: Path | None) -> N
     )
     print_comparison(responses, solid)
     if animate:
-        from impactlab.fem3d.figures.motion import animation
+        from impactlab.fem3d.figures.run import animation
 
         print(animation(solid).save(animate))
     stopped = str(solid.attrs.get("stopped", ""))

@@ -1,7 +1,5 @@
 """A 3-D run beside the beam models: solved, compared, written to files, drawn and printed."""
 
-from __future__ import annotations
-
 import tempfile
 from contextlib import AbstractContextManager
 from dataclasses import replace
@@ -16,8 +14,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Column, Table
 
-from impactlab.fem3d.figures.motion import animation
-from impactlab.fem3d.figures.run import draw_witness
+from impactlab.fem3d.figures.run import animation, draw_witness
 from impactlab.fem3d.page import write_comparison
 from impactlab.fem3d.plan import RunPlan, beam_models
 from impactlab.fem3d.solver import solve_on

@@ -1,7 +1,5 @@
 """The public function: an impact and its mesh become an input deck, in N, mm, t and s."""
 
-from __future__ import annotations
-
 import math
 import textwrap
 from collections.abc import Iterator, Mapping

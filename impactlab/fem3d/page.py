@@ -1,7 +1,5 @@
 """The report of one 3-D run beside the beam models, which the index of all results lists."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +9,7 @@ from impactlab.fem3d.plan import RunPlan
 from impactlab.fem3d.wing import SOLID, UNLIKE
 from impactlab.figures import labels
 from impactlab.figures.labels import display
-from impactlab.report.listed import write_listed
-from impactlab.report.page import Cell, Row, Section, Table
+from impactlab.report.page import Cell, Row, Section, Table, write_listed
 from impactlab.variables import reasons
 
 _JUDGED = ("peak_force", "contact_duration", "maximum_indentation", "maximum_deflection")
@@ -61,7 +58,9 @@ def _answer(responses: xr.Dataset) -> tuple[str, list[tuple[str, str]]]:
         row = shares.sel(model=name).dropna("response")
         if name != SOLID and row.size:
             pairs = zip(row["response"].values.tolist(), row.values.tolist(), strict=True)
-            texts[name] = ", ".join(f"{labels.response(key)} {_signed(x)}" for key, x in pairs)
+            texts[name] = ", ".join(
+                f"{labels.response(key)} {labels.signed(x)}" for key, x in pairs
+            )
             distances[name] = float(np.abs(row).mean())
     if not texts:
         return "No response of the beam models can be compared with the 3-D FE model", []
@@ -69,11 +68,6 @@ def _answer(responses: xr.Dataset) -> tuple[str, list[tuple[str, str]]]:
     headline = f"The {labels.beam_model(closest)} model is closest to the 3-D FE model"
     entries = [(labels.beam_model(name), texts[name]) for name in others]
     return f"{headline}: {texts[closest]}", entries
-
-
-def _signed(share: float) -> str:
-    text = f"{labels.number(100.0 * share, 2)} %"
-    return text if share < 0 else f"+{text}"
 
 
 def _table(responses: xr.Dataset) -> Table:
@@ -88,7 +82,7 @@ def _table(responses: xr.Dataset) -> Table:
             if np.isnan(value):
                 cells.append(Cell("missing", "warning"))
             else:
-                detail = "" if np.isnan(share) else _signed(float(share))
+                detail = "" if np.isnan(share) else labels.signed(float(share))
                 cells.append(Cell(labels.number(float(value)), "number", detail))
         rows.append(
             [Cell(labels.title(name), "", UNLIKE.get(name, "")), unit.symbol or "–", *cells]

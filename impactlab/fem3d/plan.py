@@ -1,7 +1,5 @@
 """The plan of a 3-D run: its case, element size, duration and cost, before anything is solved."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Report sections: the beam models beside the 3-D FE model, one table per response."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 
@@ -64,7 +62,7 @@ def _cell(
         text = f"{text} ± {_bound(100.0 * width / abs(value))}"
     gap = float(witness.difference([side], [against]).value[position])
     shown = alike and side is not against and np.isfinite(gap)
-    detail = f"{_signed(gap)} against the 3-D FE model" if shown else ""
+    detail = f"{labels.signed(gap)} against the 3-D FE model" if shown else ""
     return Cell(text, "number", detail)
 
 
@@ -76,7 +74,7 @@ def _effects(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
         cells = [Cell(labels.sentence(text))]
         for side in (effects[name][key] for name in witness.NAMES):
             value, width = float(side.value), float(side.uncertainty)
-            cell = Cell(f"{_signed(value)} ± {_bound(100.0 * width)}", "number")
+            cell = Cell(f"{labels.signed(value)} ± {_bound(100.0 * width)}", "number")
             cells.append(cell if np.isfinite(value) else Cell("missing", "warning"))
         rows.append(cells)
     head = ["Effect", *(labels.title(name) for name in witness.NAMES)]
@@ -85,8 +83,3 @@ def _effects(runs: xr.Dataset, analysis: xr.Dataset) -> Table:
 
 def _bound(percent: float) -> str:
     return f"{labels.number(percent, 2)} %" if np.isfinite(percent) else "?"
-
-
-def _signed(share: float) -> str:
-    text = f"{labels.number(100.0 * share, 2)} %"
-    return text if share < 0 else f"+{text}"

@@ -1,7 +1,5 @@
 """Rules of a study with runs of the 3-D FE model: what they require, and how they converge."""
 
-from __future__ import annotations
-
 from impactlab.analysis.convergence.axes import Axis, Growth
 from impactlab.fem3d.wing import MODEL, SIZES, SOLID
 from impactlab.methods.grid import Grid

@@ -4,8 +4,6 @@ The record of a run is that of the kernels (solver.types.CASE) with the size of 
 What a run does not depend on is zero in it, so that runs which differ in that alone are one case.
 """
 
-from __future__ import annotations
-
 import hashlib
 import logging
 import time

@@ -1,7 +1,5 @@
 """Data access: the responses, failed runs and verdicts that stored datasets hold."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Moving pictures of one impact: deflection, plastic zone and contact force."""
 
-from __future__ import annotations
-
 import base64
 import html
 import io

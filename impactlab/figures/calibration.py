@@ -1,7 +1,5 @@
 """The figure of a calibration: posterior beside prior, predictions beside data, weights of laws."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

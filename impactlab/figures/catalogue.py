@@ -1,7 +1,5 @@
 """The registry of figures; a new one is a record in its module and a line here."""
 
-from __future__ import annotations
-
 import xarray as xr
 
 from impactlab.analysis.distribution import limits

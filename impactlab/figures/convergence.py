@@ -1,7 +1,5 @@
 """Figures of convergence in space, time and integration points, and of its cost."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """Curves of chosen runs, and of which runs of a large grid; measurements over them."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

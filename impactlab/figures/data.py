@@ -6,8 +6,6 @@ with error bars the ends of these in `low` and `high`. A map of colours has no c
 are in analysis.nc.
 """
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Figures of distributions: histograms, cumulative curves with their band, parameters by limit."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """Draw every figure that applies, into files."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable, Iterable, Mapping

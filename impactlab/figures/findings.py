@@ -1,7 +1,5 @@
 """Figures of a verification: all comparisons on one axis, and the curves of each check."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from textwrap import fill
 from typing import Any

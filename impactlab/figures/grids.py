@@ -1,7 +1,5 @@
 """Figures of grids: against the impact velocity, and the effects of parameters and of shear."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 

@@ -3,8 +3,6 @@
 Morris (1991), Technometrics 33, 161; µ* after Campolongo et al. (2007), Environ. Modell. Softw. 22.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -27,7 +25,6 @@ from impactlab.variables import status_bits
 
 _THICK = 0.76  # thickness of all bars of a row together, in rows
 _PALE = 0.45  # opacity of bars that are within the noise or below the numerical error
-_VERDICT = "sensitivity_verdict"
 _SAMPLES = "base_samples"
 _ENDS = (-0.25, 1.25)
 """Largest limits of the axis; intervals from few samples can be many times wider."""
@@ -175,7 +172,7 @@ def index_convergence(measure: Measure) -> Figure:
             low, high = ax.get_ylim()
             ax.set_ylim(max(low, _ENDS[0]), min(high, _ENDS[1]))
             scales.linear(ax, "y")
-            responses_grid.warn(ax, access.verdict(analysis, _VERDICT, name))
+            responses_grid.warn(ax, access.verdict(analysis, access.VERDICT, name))
         return style.finish(figure, "Base samples (–)", "Share of the variance (–)")
 
     return plot
@@ -214,7 +211,7 @@ def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     colours = Normalize(0.0, max(map(float, tops)))
     for name, ax in axes.items():
         _map(ax, values[name][:-1, 1:], significant[name][:-1, 1:], colours)
-        responses_grid.warn(ax, access.verdict(analysis, _VERDICT, name))
+        responses_grid.warn(ax, access.verdict(analysis, access.VERDICT, name))
         _name_pairs(ax, listed)
     thin = 20 * min(len(axes), 2)
     scale = ScalarMappable(colours, _CELLS)
@@ -313,7 +310,7 @@ def plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> No
             xerr = margin[number] if np.isfinite(margin[number]) else None
             look = style.distinct(number) | {"linestyle": "", "elinewidth": 0.8}
             ax.errorbar(x[number], y[number], xerr=xerr, label=parameter, **look)
-    responses_grid.warn(ax, access.verdict(analysis, _VERDICT, response))
+    responses_grid.warn(ax, access.verdict(analysis, access.VERDICT, response))
     if not ax.lines:
         responses_grid.empty(ax)
         return

@@ -3,8 +3,6 @@
 Force is shown in kN, time in ms, lengths in mm or µm, strain in %.
 """
 
-from __future__ import annotations
-
 import math
 import textwrap
 from collections.abc import Iterable, Sequence
@@ -132,6 +130,12 @@ def percent(share: float, digits: int = 2) -> str:
     if math.isinf(share):
         return "no bound"
     return "–" if math.isnan(share) else f"{number(100 * share, digits)} %"
+
+
+def signed(share: float) -> str:
+    """Return a relative change in per cent with its sign: "+1.5 %"."""
+    text = f"{number(100.0 * share, 2)} %"
+    return text if share < 0 else f"+{text}"
 
 
 def counted(number: int, noun: str) -> str:

@@ -1,7 +1,5 @@
 """Sensitivity measures of every method: their indices, intervals and noise floors."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

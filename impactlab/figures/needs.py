@@ -1,7 +1,5 @@
 """The one judgement of a convergence study: of answer, figures, captions and tables alike."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -74,20 +72,12 @@ class Needs(NamedTuple):
         for dim in self.axes:
             verdict = self.verdict(REFINED[dim], name)
             if verdict and not verdict.sound:
-                axes.setdefault(verdict.words, []).append(_WORDS[REFINED[dim]])
+                axes.setdefault(verdict.words, []).append(labels.response(REFINED[dim]))
         doubts = [f"{texts} in {labels.listing(listed)}" for texts, listed in axes.items()]
         if doubts or name in self.grids:
             return doubts
-        listed = [_WORDS[REFINED[dim]] for dim in self.axes]
+        listed = [labels.response(REFINED[dim]) for dim in self.axes]
         return [f"the uncertainties in {labels.listing(listed)} add up"]
-
-
-_WORDS = {
-    "nodes": "nodes",
-    "time_step": "time step",
-    "element_size": "element size",
-    "points": "points",
-}
 
 
 _Judgements = dict[tuple[int, int], tuple["Needs | None", xr.Dataset, xr.Dataset]]

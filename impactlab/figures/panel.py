@@ -1,7 +1,5 @@
 """Axes that hand over the numbers drawn in them: the data of a figure (data.py)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """The record of a figure, and what its folder says of those drawn."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable, Iterable

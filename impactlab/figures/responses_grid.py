@@ -1,7 +1,5 @@
 """Small multiples: a panel per response."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import xarray as xr

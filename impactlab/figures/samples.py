@@ -1,7 +1,5 @@
 """Figures of a sample: scatter plots, tests of surrogates, and where runs fail."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import combinations
 from typing import Any, Literal

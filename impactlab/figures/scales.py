@@ -1,7 +1,5 @@
 """Axes that stay readable at paper width: linear or logarithmic, few ticks, plain numbers."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np

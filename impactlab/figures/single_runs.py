@@ -1,7 +1,5 @@
 """Figures of single runs: histories of force and displacement, and profiles of plastic strain."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The figure of repeated strikes: what each of them leaves, against its number."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

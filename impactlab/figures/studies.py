@@ -1,7 +1,5 @@
 """Figures of several studies side by side: a colour per study, on common axes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial

@@ -3,8 +3,6 @@
 Colours: Okabe and Ito (2008), "Color Universal Design".
 """
 
-from __future__ import annotations
-
 import math
 import textwrap
 import threading

@@ -5,8 +5,6 @@ with its draws, and the record of its indices: variables, estimator, figure and 
 classes with a label here are methods; a line in impactlab/__init__.pyi makes one public.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
@@ -22,8 +20,7 @@ from impactlab.methods.grid import Grid
 from impactlab.methods.hypercube import Hypercube
 from impactlab.methods.record import Family, Indices
 from impactlab.methods.runs import Sample
-from impactlab.methods.sampling import RandomSample, Sampling
-from impactlab.methods.table import Table
+from impactlab.methods.sampling import RandomSample, Sampling, Table
 from impactlab.validation.fields import name_at
 
 for _module in iter_modules([str(Path(__file__).parent)]):

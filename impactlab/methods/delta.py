@@ -16,20 +16,22 @@ The first order is the covariance of neighbours among the runs in the order of t
 Gamboa et al. (2022). Neighbours share hardly any noise, so that few runs do not bias it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 import scipy  # its stats are loaded when first used
 
-from impactlab.methods.estimators import apart_from_dummy, dummy_column
 from impactlab.methods.hypercube import Hypercube
-from impactlab.methods.record import Family, IndexVariable, Indices, Measure
-from impactlab.methods.runs import Sample
-from impactlab.methods.verdict import SensitivityVerdict, wide
+from impactlab.methods.record import (
+    Family,
+    IndexVariable,
+    Indices,
+    Measure,
+    SensitivityVerdict,
+    wide,
+)
+from impactlab.methods.runs import Sample, apart_from_dummy, dummy_column
 from impactlab.types import Floats
 
 GRID = 200  # places at which densities are compared
@@ -163,30 +165,16 @@ def _judge(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
 INDICES = Indices("delta", _VARIABLES, FAMILY, Sample.ungrouped, _estimate, _judge, fewest=64)
 
 
-@dataclass(frozen=True, kw_only=True)
 class Delta(Hypercube):
     """A Latin hypercube for Borgonovo's delta.
 
-    Parameters
-    ----------
-    parameters : mapping of str to distribution or Quantity
-        Distribution, or one fixed value, by name of the parameter.
-    seed : int, default 1
-        Equal seeds give equal runs.
-    samples : int
-        Number of runs, at least 64.
-    correlations : sequence of (str, str, float), optional
-        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
-        pairs are independent.
+    {arguments}
 
     References
     ----------
     Plischke et al. (2013), Eur. J. Oper. Res. 226, 536, eqs. 26 and 30.
 
-    Examples
-    --------
-    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
-    >>> sample = il.Delta(samples=128, parameters={"velocity": speed, "beam_depth": depth})
+    {example}
     """
 
     records = (INDICES,)

@@ -5,8 +5,6 @@ runs.nc, whose other attributes do not matter here. A new one is a class here, a
 impactlab/__init__.pyi.
 """
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -27,8 +25,16 @@ from pydantic import (
 
 from impactlab.model.quantities import Quantity, engineering, whole
 from impactlab.types import Floats
-from impactlab.validation.fields import LABEL, Number, Whole, at_key, quantity, requires, value_type
-from impactlab.validation.stated import Stated
+from impactlab.validation.fields import (
+    LABEL,
+    Number,
+    Stated,
+    Whole,
+    at_key,
+    quantity,
+    requires,
+    value_type,
+)
 
 _NEGLIGIBLE = 1e-40  # share of the draws beyond either end of a quadrature
 _PANELS, _NODES = 40, 40  # of Gauss and Legendre
@@ -296,12 +302,10 @@ class Triangular(Distribution):
 
     Parameters
     ----------
-    low : Quantity
-        Lower end, in the parameter's unit.
+    low, high : Quantity
+        Ends of the range, in the parameter's unit.
     mode : Quantity
         Most probable value, in the parameter's unit.
-    high : Quantity
-        Upper end, in the parameter's unit.
 
     Examples
     --------

@@ -8,8 +8,6 @@ the spectrum are counted into the total order of each; the dummy shows how much 
 index is added to the half-widths.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated, Any, Self
 
@@ -17,12 +15,10 @@ import numpy as np
 import scipy  # its stats are loaded when first used
 from pydantic import Field, model_validator
 
-from impactlab.methods.estimators import apart_from_dummy
-from impactlab.methods.record import IndexVariable, Indices
-from impactlab.methods.runs import Sample
+from impactlab.methods.record import IndexVariable, Indices, of_orders
+from impactlab.methods.runs import Sample, apart_from_dummy
 from impactlab.methods.sampling import MOST_RUNS, RandomSample
 from impactlab.methods.sobol import FAMILY
-from impactlab.methods.verdict import of_orders
 from impactlab.types import Floats
 from impactlab.validation.fields import Whole, at_key
 

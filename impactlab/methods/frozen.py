@@ -1,7 +1,5 @@
 """Frozen distributions of SciPy as those of this package."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

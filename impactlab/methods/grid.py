@@ -1,7 +1,5 @@
 """Grid: every combination of listed values."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import dataclass
 from math import prod

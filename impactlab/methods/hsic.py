@@ -12,18 +12,22 @@ p-value is the share of shuffles with a larger criterion: below 0.05, dependence
 noise. Target indices (Marrel and Chabridon 2021) are those of whether the limit is exceeded.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 import scipy  # its stats are loaded when first used
 
 from impactlab.methods.hypercube import Hypercube
-from impactlab.methods.record import Family, IndexVariable, Indices, Measure
+from impactlab.methods.record import (
+    Family,
+    IndexVariable,
+    Indices,
+    Measure,
+    SensitivityVerdict,
+    by_width,
+    wide,
+)
 from impactlab.methods.runs import Sample, listed
-from impactlab.methods.verdict import SensitivityVerdict, wide
 from impactlab.types import Floats
 
 MOST = 2000
@@ -134,10 +138,6 @@ def _centred(kernel: Floats) -> Floats:
     return np.asarray(kernel - means - means[:, np.newaxis] + means.mean())
 
 
-def _judge(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
-    return wide(indices["hsic_interval"])
-
-
 def _judge_target(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
     if np.isnan(indices["target_hsic"]).all():
         return [SensitivityVerdict.NO_LIMIT]
@@ -150,7 +150,7 @@ INDICES = Indices(
     _family("hsic", " of the response"),
     Sample.ungrouped,
     _estimate,
-    _judge,
+    by_width("hsic"),
     fewest=64,
 )
 TARGET = Indices(
@@ -165,60 +165,32 @@ TARGET = Indices(
 )
 
 
-@dataclass(frozen=True, kw_only=True)
 class Hsic(Hypercube):
     """A Latin hypercube for HSIC indices.
 
-    Parameters
-    ----------
-    parameters : mapping of str to distribution or Quantity
-        Distribution, or one fixed value, by name of the parameter.
-    seed : int, default 1
-        Equal seeds give equal runs.
-    samples : int
-        Number of runs, at least 64.
-    correlations : sequence of (str, str, float), optional
-        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
-        pairs are independent.
+    {arguments}
 
     References
     ----------
     Da Veiga (2015), J. Stat. Comput. Simul. 85, 1283.
 
-    Examples
-    --------
-    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
-    >>> sample = il.Hsic(samples=128, parameters={"velocity": speed, "beam_depth": depth})
+    {example}
     """
 
     records = (INDICES,)
     label = "Latin hypercube for HSIC indices"
 
 
-@dataclass(frozen=True, kw_only=True)
 class TargetHsic(Hypercube):
     """A Latin hypercube for HSIC indices of whether the limits of a study are exceeded.
 
-    Parameters
-    ----------
-    parameters : mapping of str to distribution or Quantity
-        Distribution, or one fixed value, by name of the parameter.
-    seed : int, default 1
-        Equal seeds give equal runs.
-    samples : int
-        Number of runs, at least 64.
-    correlations : sequence of (str, str, float), optional
-        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
-        pairs are independent.
+    {arguments}
 
     References
     ----------
     Marrel and Chabridon (2021), Reliab. Eng. Syst. Saf. 206, 107283.
 
-    Examples
-    --------
-    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
-    >>> sample = il.TargetHsic(samples=128, parameters={"velocity": speed, "beam_depth": depth})
+    {example}
     """
 
     records = (TARGET,)

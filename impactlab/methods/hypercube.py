@@ -1,10 +1,8 @@
 """Latin hypercubes, correlated or not: the sample of every index from given data.
 
 Rank correlations between parameters are those of a Gaussian copula: their distributions stay as
-stated.
+stated. A method has one index; `Latin` has several.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Sequence
@@ -14,12 +12,13 @@ from typing import Annotated, Any, Self
 import numpy as np
 import scipy  # its stats are loaded when first used
 from numpy.typing import NDArray
-from pydantic import Field, PlainValidator, StrictStr, TypeAdapter, model_validator
+from pydantic import Field, PlainValidator, StrictStr, TypeAdapter, ValidationInfo, model_validator
 
+from impactlab.methods.record import Indices
 from impactlab.methods.sampling import DRAWN_TOGETHER, MOST_RUNS, DrawnTogether
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown
-from impactlab.validation.fields import Number, Whole, at_key
+from impactlab.validation.fields import Number, Whole, at_key, names
 
 Places = NDArray[np.uint64]
 Correlations = Sequence[tuple[str, str, float]]
@@ -27,7 +26,21 @@ Correlations = Sequence[tuple[str, str, float]]
 _LEAST = 1e-8  # smallest eigenvalue of a matrix that counts as positive definite
 FEWEST_OF_WORD = 20
 """Runs per word: bootstrap resamples then practically never hold fewer than two."""
-
+_ARGUMENTS = """Parameters
+    ----------
+    parameters : mapping of str to distribution or Quantity
+        Distribution, or one fixed value, by name of the parameter.
+    seed : int, default 1
+        Equal seeds give equal runs.
+    samples : int
+        Number of runs, at least {fewest}.
+    correlations : sequence of (str, str, float), optional
+        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
+        pairs are independent."""
+_EXAMPLE = """Examples
+    --------
+    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
+    >>> sample = il.{method}(samples=128, parameters={{"velocity": speed, "beam_depth": depth}})"""
 
 _Triple = tuple[StrictStr, StrictStr, Annotated[Number, Field(gt=-1, lt=1)]]
 
@@ -51,6 +64,13 @@ class Hypercube(DrawnTogether):
     even = True
     samples: Annotated[Whole, Field(le=MOST_RUNS)]
     correlations: Annotated[Correlations, PlainValidator(_read_triples)] = ()
+
+    def __init_subclass__(cls) -> None:
+        """Fill in what the docstrings of the methods share."""
+        super().__init_subclass__()
+        fewest = max((indices.fewest for indices in cls.records), default=0)
+        text = (cls.__doc__ or "").replace("{arguments}", _ARGUMENTS.format(fewest=fewest))
+        cls.__doc__ = text.replace("{example}", _EXAMPLE.format(method=cls.__name__))
 
     @property
     def runs(self) -> int:
@@ -235,3 +255,57 @@ def correlated(unit: Floats, linear: Floats) -> Floats:
     normal = scipy.stats.norm.ppf(unit) @ np.linalg.cholesky(linear).T
     ranks = normal.argsort(axis=0, kind="stable").argsort(axis=0)
     return np.asarray(np.take_along_axis(np.sort(unit, axis=0), ranks, axis=0))
+
+
+def _choices() -> dict[str, Indices]:
+    """Return the indices that a Latin hypercube can have, by name."""
+    return {record.name: record for kind in Hypercube.__subclasses__() for record in kind.records}
+
+
+def _read_names(data: Any, info: ValidationInfo) -> tuple[str, ...]:
+    if data == "all":
+        data = [name for name, record in _choices().items() if not record.most | record.of_limits]
+    reader: Any = names("index", _choices()).func
+    chosen: tuple[str, ...] = reader(data, info)
+    return chosen
+
+
+@dataclass(frozen=True, kw_only=True)
+class Latin(Hypercube):
+    """A Latin hypercube for several indices, all from the same runs.
+
+    Parameters
+    ----------
+    parameters : mapping of str to distribution or Quantity
+        Distribution, or one fixed value, by name of the parameter.
+    seed : int, default 1
+        Equal seeds give equal runs.
+    samples : int
+        Number of runs, at least 64, with "pawn" 100, with "shapley" 128.
+    correlations : sequence of (str, str, float), optional
+        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
+        pairs are independent.
+    indices : sequence of str or "all"
+        "delta", "hsic", "pawn", "rbd_fast", "regression", "shapley", "target_hsic"; the first one
+        ranks the parameters; "all" stands for those of any number of parameters and without limits.
+
+    Examples
+    --------
+    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
+    >>> sample = il.Latin(
+    ...     samples=128, indices=["delta", "pawn"],
+    ...     parameters={"velocity": speed, "beam_depth": depth})
+    """
+
+    label = "Latin hypercube"
+    indices: Annotated[Sequence[str], PlainValidator(_read_names)]
+
+    @property
+    def estimates(self) -> tuple[Indices, ...]:
+        """Indices that the analysis estimates."""
+        return tuple(_choices()[name] for name in self.indices)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """The attributes of a design that describe its draws."""
+        return super().settings | {"indices": list(self.indices)}

@@ -1,7 +1,5 @@
 """Morris' elementary effects: a screening, cheap but without shares of the variance."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Self
@@ -10,10 +8,16 @@ import numpy as np
 import scipy  # its stats are loaded when first used
 from pydantic import Field, model_validator
 
-from impactlab.methods.record import Family, IndexVariable, Indices, Measure
+from impactlab.methods.record import (
+    Family,
+    IndexVariable,
+    Indices,
+    Measure,
+    SensitivityVerdict,
+    wide,
+)
 from impactlab.methods.runs import Sample
 from impactlab.methods.sampling import DrawnTogether, Grouped
-from impactlab.methods.verdict import SensitivityVerdict, wide
 from impactlab.types import Floats
 from impactlab.validation.fields import Whole, at_key, requires
 

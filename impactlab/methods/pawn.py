@@ -8,19 +8,12 @@ is what shuffles stay below. The slides of a parameter that takes words are the 
 median is that over the runs.
 """
 
-from __future__ import annotations
-
-from collections.abc import Mapping
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
-from impactlab.methods.estimators import dummy_column
 from impactlab.methods.hypercube import Hypercube
-from impactlab.methods.record import Family, IndexVariable, Indices, Measure
-from impactlab.methods.runs import Sample
-from impactlab.methods.verdict import SensitivityVerdict, wide
+from impactlab.methods.record import Family, IndexVariable, Indices, Measure, by_width
+from impactlab.methods.runs import Sample, dummy_column
 from impactlab.types import Floats
 
 SLIDES = 10  # classes of a parameter's values, as in SALib
@@ -115,37 +108,21 @@ def distances(members: npt.NDArray[np.bool_], last: npt.NDArray[np.intp]) -> Flo
     return np.asarray(np.abs(apart).max(axis=0))
 
 
-def _judge(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
-    return wide(indices["pawn_interval"])
+INDICES = Indices(
+    "pawn", _VARIABLES, FAMILY, _check, _estimate, by_width("pawn"), fewest=SLIDES * FEWEST
+)
 
 
-INDICES = Indices("pawn", _VARIABLES, FAMILY, _check, _estimate, _judge, fewest=SLIDES * FEWEST)
-
-
-@dataclass(frozen=True, kw_only=True)
 class Pawn(Hypercube):
     """A Latin hypercube for PAWN indices.
 
-    Parameters
-    ----------
-    parameters : mapping of str to distribution or Quantity
-        Distribution, or one fixed value, by name of the parameter.
-    seed : int, default 1
-        Equal seeds give equal runs.
-    samples : int
-        Number of runs, at least 100.
-    correlations : sequence of (str, str, float), optional
-        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
-        pairs are independent.
+    {arguments}
 
     References
     ----------
     Pianosi and Wagener (2018), Environ. Model. Softw. 108, 197, eqs. 2 and 3.
 
-    Examples
-    --------
-    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
-    >>> sample = il.Pawn(samples=128, parameters={"velocity": speed, "beam_depth": depth})
+    {example}
     """
 
     records = (INDICES,)

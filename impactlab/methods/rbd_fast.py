@@ -8,20 +8,13 @@ of the noise that the terms fit. A response that jumps has harmonics without end
 about what the second half of the others adds, so that the interval is wider by that, times SAFETY.
 """
 
-from __future__ import annotations
-
-from collections.abc import Mapping
-from dataclasses import dataclass
-
 import numpy as np
 import scipy  # its stats are loaded when first used
 
-from impactlab.methods.estimators import apart_from_dummy, dummy_column
 from impactlab.methods.hypercube import Hypercube
-from impactlab.methods.record import IndexVariable, Indices
-from impactlab.methods.runs import Sample
+from impactlab.methods.record import IndexVariable, Indices, by_width
+from impactlab.methods.runs import Sample, apart_from_dummy, dummy_column
 from impactlab.methods.sobol import FAMILY
-from impactlab.methods.verdict import SensitivityVerdict, wide
 from impactlab.types import Floats
 
 HARMONICS = 10  # least number; the root of the runs where that is more, to follow jumps
@@ -73,47 +66,29 @@ def _first_orders(ordered: Floats, harmonics: int) -> tuple[Floats, Floats]:
     return 1.0 - unexplained, error
 
 
-def _judge(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
-    return wide(indices["first_order_interval"])
-
-
 INDICES = Indices(
     "rbd_fast",
     _VARIABLES,
     FAMILY,
     _check,
     _estimate,
-    _judge,
+    by_width("first_order"),
     fewest=64,
     order="moves along the values in waves",
 )
 
 
-@dataclass(frozen=True, kw_only=True)
 class RbdFast(Hypercube):
     """A Latin hypercube for first-order Sobol indices by RBD-FAST.
 
-    Parameters
-    ----------
-    parameters : mapping of str to distribution or Quantity
-        Distribution, or one fixed value, by name of the parameter.
-    seed : int, default 1
-        Equal seeds give equal runs.
-    samples : int
-        Number of runs, at least 64.
-    correlations : sequence of (str, str, float), optional
-        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
-        pairs are independent.
+    {arguments}
 
     References
     ----------
     Tarantola et al. (2006), Reliab. Eng. Syst. Saf. 91, 717; Tissot and Prieur (2012), Reliab. Eng.
     Syst. Saf. 107, 205.
 
-    Examples
-    --------
-    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
-    >>> sample = il.RbdFast(samples=256, parameters={"velocity": speed, "beam_depth": depth})
+    {example}
     """
 
     records = (INDICES,)

@@ -1,18 +1,20 @@
 """Standardised regression coefficients, on values and on ranks: signed, but linear or monotone."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 import scipy  # its stats are loaded when first used
 
-from impactlab.methods.estimators import dummy_column, half_widths
 from impactlab.methods.hypercube import Hypercube
-from impactlab.methods.record import Family, IndexVariable, Indices, Measure
-from impactlab.methods.runs import Sample
-from impactlab.methods.verdict import SensitivityVerdict, wide
+from impactlab.methods.record import (
+    Family,
+    IndexVariable,
+    Indices,
+    Measure,
+    SensitivityVerdict,
+    wide,
+)
+from impactlab.methods.runs import Sample, dummy_column, half_widths
 from impactlab.types import Floats
 
 _2008 = "Saltelli et al. (2008), Global Sensitivity Analysis: The Primer, section 1.2.5"
@@ -116,30 +118,16 @@ INDICES = Indices(
 )
 
 
-@dataclass(frozen=True, kw_only=True)
 class Regression(Hypercube):
     """A Latin hypercube for regression coefficients.
 
-    Parameters
-    ----------
-    parameters : mapping of str to distribution or Quantity
-        Distribution, or one fixed value, by name of the parameter.
-    seed : int, default 1
-        Equal seeds give equal runs.
-    samples : int
-        Number of runs, at least 64.
-    correlations : sequence of (str, str, float), optional
-        Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
-        pairs are independent.
+    {arguments}
 
     References
     ----------
     Saltelli et al. (2008), Global Sensitivity Analysis: The Primer, section 1.2.5.
 
-    Examples
-    --------
-    >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
-    >>> sample = il.Regression(samples=128, parameters={"velocity": speed, "beam_depth": depth})
+    {example}
     """
 
     records = (INDICES,)

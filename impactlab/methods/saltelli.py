@@ -6,19 +6,16 @@ have to be uncorrelated, as independent points are: a correlation of theirs ente
 index.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from threading import Lock
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import scipy  # its stats are loaded when first used
 
-from impactlab.methods.estimators import leave_one_out
-from impactlab.methods.runs import Sample
+from impactlab.methods.runs import Sample, leave_one_out
 from impactlab.types import Floats
 
 REPLICATES = 8
@@ -108,7 +105,7 @@ class Outputs:
     replicates: int
 
     @classmethod
-    def of(cls, outputs: Floats, sample: Sample) -> Outputs:
+    def of(cls, outputs: Floats, sample: Sample) -> Self:
         """Return outputs (runs,), which are not all equal, as a table."""
         table, second = outputs.reshape(-1, step(sample)), bool(sample.number("second_order"))
         replicates = min(sample.number("replicates"), len(table))

@@ -1,7 +1,5 @@
 """Base classes of methods of sampling: sections `sampling` of a study, and objects in Python."""
 
-from __future__ import annotations
-
 import logging
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
@@ -36,8 +34,7 @@ from impactlab.methods.runs import Sample
 from impactlab.model.parameters import PROFILE_FIXED, SPHERES_FIXED, Parameter, Value
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown
-from impactlab.validation.fields import LABEL, Names, Whole, at_key, by_name, name_at
-from impactlab.validation.stated import Stated
+from impactlab.validation.fields import LABEL, Names, Stated, Whole, at_key, by_name, name_at
 
 MOST_RUNS = 2_000_000_000
 DRAWN_TOGETHER = 10_000_000
@@ -379,3 +376,10 @@ class Grouped(RandomSample):
                     continue
                 raise at_key(f"groups.{group}.{index}", reason)
         return self
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table(RandomSample):
+    """Rows of a design made elsewhere, or of measurements, each a draw of its own."""
+
+    label = "table"

@@ -17,10 +17,7 @@ that neighbours some way off make falls slowly with the runs, so that it is abou
 halves of the sample to the whole; the interval adds that, times SAFETY.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,9 +26,8 @@ import scipy  # its parts are loaded when first used
 from threadpoolctl import threadpool_limits
 
 from impactlab.methods.hypercube import Hypercube
-from impactlab.methods.record import Family, IndexVariable, Indices, Measure
+from impactlab.methods.record import Family, IndexVariable, Indices, Measure, by_width
 from impactlab.methods.runs import Sample
-from impactlab.methods.verdict import SensitivityVerdict, wide
 from impactlab.types import Floats
 
 Mask = npt.NDArray[np.bool_]
@@ -139,12 +135,15 @@ def _codes(values: Floats) -> Floats:
     return np.asarray(values[:, np.newaxis] == np.unique(values), float)
 
 
-def _judge(indices: Mapping[str, Floats]) -> list[SensitivityVerdict]:
-    return wide(indices["shapley_interval"])
-
-
 INDICES = Indices(
-    "shapley", _VARIABLES, FAMILY, Sample.ungrouped, _estimate, _judge, fewest=128, most=MOST
+    "shapley",
+    _VARIABLES,
+    FAMILY,
+    Sample.ungrouped,
+    _estimate,
+    by_width("shapley"),
+    fewest=128,
+    most=MOST,
 )
 
 

@@ -1,7 +1,5 @@
 """Sobol indices of first, second and total order from Saltelli's sample."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Self
@@ -17,12 +15,20 @@ from pydantic import (
     model_validator,
 )
 
-from impactlab.methods.estimators import half_width
-from impactlab.methods.record import BY_SAMPLES, PAIR, Family, IndexVariable, Indices, Measure
-from impactlab.methods.runs import Sample
+from impactlab.methods.record import (
+    BY_SAMPLES,
+    PAIR,
+    Family,
+    IndexVariable,
+    Indices,
+    Measure,
+    SensitivityVerdict,
+    of_orders,
+    still,
+)
+from impactlab.methods.runs import Sample, half_width
 from impactlab.methods.saltelli import REPLICATES, Outputs, estimates, saltelli, step
 from impactlab.methods.sampling import MOST_RUNS, Grouped
-from impactlab.methods.verdict import SensitivityVerdict, of_orders, still
 from impactlab.types import Floats
 from impactlab.validation.fields import FileSection, Names, Number, Whole, at_key
 from impactlab.verdicts import ROUND_OFF

@@ -21,8 +21,6 @@ Sources: W. H. Wittrick, F. W. Williams, Q. J. Mech. Appl. Math. 24 (1971) 263; 
 Sound, sections 170 to 175, on the integral of phi^2.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from typing import Any

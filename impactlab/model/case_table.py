@@ -1,7 +1,5 @@
 """The case table: impacts as the records that the kernels take, one per run."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -9,12 +7,11 @@ from typing import Any
 import numpy as np
 
 from impactlab import wings
-from impactlab.model.bodies import Beam
+from impactlab.model.bodies import PLACE_OF_ITS_OWN, Beam, sphere_rows
 from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import case_fields
 from impactlab.model.cost import flies
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.further_spheres import PLACE_OF_ITS_OWN, sphere_rows
 from impactlab.model.impact import Impact
 from impactlab.model.laminate import LEAST_FIBRES, layer_rows
 from impactlab.model.parameters import (

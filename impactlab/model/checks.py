@@ -4,8 +4,6 @@ A column of values, for many runs at once, takes the place of a number, so that 
 written once. A refused column may still hold valid runs: then the runs are checked one by one.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Iterable, Sequence
 from difflib import get_close_matches

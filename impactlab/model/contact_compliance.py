@@ -34,13 +34,11 @@ moment, and one by the force, which keeps the section from bending freely beneat
 the width, -3/4 (1 + 5 nu)/sqrt(6 (1 + nu)) F/H^2 at the surface of a long beam, is no part of it.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from impactlab.model.further_spheres import sphere_rows
+from impactlab.model.bodies import sphere_rows
 from impactlab.model.impact import OTHER_SECTION, Impact
 from impactlab.model.shapes import Rectangle
 from impactlab.solver import RESISTANCES

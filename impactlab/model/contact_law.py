@@ -1,7 +1,5 @@
 """Contact laws from outside the package: the class, and how sessions come to know them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, ClassVar

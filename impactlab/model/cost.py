@@ -1,7 +1,5 @@
 """The cost of a run, estimated before it is made."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -3,25 +3,24 @@
 A width that jumps, or that has a vertical tangent, is integrated badly by a rule over the depth.
 Here the rule takes the width into its weights: the n = points // 2 fibres above the axis are the
 nodes of Gauss's rule of z with respect to the area, or of Radau's, whose last node is the edge
-(integration.py). They have the moments of the section exactly up to z^(2n-1), or z^(2n-2): from
+(discretisation.py). They have the moments of the section exactly up to z^(2n-1), or z^(2n-2): from
 n = 2 on its area, its full plastic moment and its bending stiffness, on any shape. Layers have
 their exact area and first moment each. An odd point lies on the axis, without area.
 """
 
-from __future__ import annotations
-
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from impactlab.model.integration import gauss
+from impactlab.model.discretisation import gauss
 from impactlab.types import Floats
 
 
 @dataclass(frozen=True)
-class Section:
+class Section(ABC):
     """A section that is symmetric about its axis, or one per beam in columns.
 
     Parameters
@@ -39,6 +38,7 @@ class Section:
     depth: Any
 
     @property
+    @abstractmethod
     def area(self) -> Any:
         """Area of the section.
 
@@ -46,15 +46,10 @@ class Section:
         -------
         float
             A, in m2.
-
-        Raises
-        ------
-        NotImplementedError
-            If the class is no shape.
         """
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def second_moment(self) -> Any:
         """Second moment of area about the axis.
 
@@ -62,15 +57,10 @@ class Section:
         -------
         float
             I, in m4.
-
-        Raises
-        ------
-        NotImplementedError
-            If the class is no shape.
         """
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def plastic_modulus(self) -> Any:
         """Bending moment over the yield stress where every fibre yields.
 
@@ -78,14 +68,9 @@ class Section:
         -------
         float
             Plastic section modulus, in m3.
-
-        Raises
-        ------
-        NotImplementedError
-            If the class is no shape.
         """
-        raise NotImplementedError
 
+    @abstractmethod
     def shear_coefficient(self, poissons_ratio: Any) -> Any:
         """Return the shear coefficient of Timoshenko's beam.
 
@@ -98,13 +83,7 @@ class Section:
         -------
         float
             k, of 1.
-
-        Raises
-        ------
-        NotImplementedError
-            If the class is no shape.
         """
-        raise NotImplementedError
 
     @property
     def stress_per_moment(self) -> Any:

@@ -1,7 +1,5 @@
 """Flow laws of the beam's fibres from outside the package: hardening and rate of one's own."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, ClassVar

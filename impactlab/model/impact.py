@@ -4,18 +4,15 @@ Quantities are numbers in SI units, strings with a unit ("27.8 mm") or quantitie
 hold SI numbers.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from impactlab import wings
-from impactlab.model.bodies import Beam, Sphere
+from impactlab.model.bodies import Beam, Sphere, spheres_text
 from impactlab.model.checks import among, instance, integer, number, one_of, positive, require
 from impactlab.model.contact_law import LAW_NAMES, ContactLaw
-from impactlab.model.further_spheres import spheres_text
 from impactlab.model.material import Material
 from impactlab.model.quantities import SI, Quantity, engineering
 from impactlab.solver import (

@@ -14,8 +14,6 @@ Source: the transformed section of composite beams (Gere and Goodno, Mechanics o
 
 # ruff: noqa: D102 - a shape's methods are documented once, in Section
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -24,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from impactlab.model.cross_section import Section
-from impactlab.model.integration import gauss
+from impactlab.model.discretisation import gauss
 from impactlab.types import Floats
 
 LEAST_FIBRES = 2

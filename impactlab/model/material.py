@@ -1,7 +1,5 @@
 """The metal of a sphere or a beam."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Common parts of laws from outside the package: compiled functions, a hash, a register."""
 
-from __future__ import annotations
-
 import base64
 import inspect
 import zlib

@@ -4,8 +4,6 @@ The names serve as keys of study files, coordinates of datasets and fields of th
 table alike, so that a parameter is spelled in one way everywhere.
 """
 
-from __future__ import annotations
-
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce

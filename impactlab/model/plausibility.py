@@ -5,8 +5,6 @@ above the span). The limits here come from physics, each with its reason: imposs
 refused in studies and commands, and implausible ones give a warning.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from math import inf, sqrt
 from operator import attrgetter

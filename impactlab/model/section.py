@@ -11,8 +11,6 @@ Kernels take sections that are symmetric about their axis: of the fibres they ke
 each counted twice.
 """
 
-from __future__ import annotations
-
 from dataclasses import fields
 from itertools import pairwise
 from typing import Any

@@ -7,8 +7,6 @@ do not.
 
 # ruff: noqa: D102 - a shape's methods are documented once, in Section
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cache
@@ -18,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from impactlab.model.cross_section import Section
-from impactlab.model.integration import integration_rule
+from impactlab.model.discretisation import integration_rule
 from impactlab.types import Floats
 
 _PI = math.pi

@@ -1,7 +1,5 @@
 """The answer to the paper: its figures, claims.html, claims.csv and numbers.csv in one folder."""
 
-from __future__ import annotations
-
 import csv
 import logging
 from collections import Counter

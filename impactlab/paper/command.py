@@ -1,7 +1,5 @@
 """The command that answers the paper."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

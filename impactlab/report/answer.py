@@ -1,7 +1,5 @@
 """The answer to a study's question: a headline, and at most four lines, in numbers."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from math import isfinite
 

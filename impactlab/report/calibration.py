@@ -1,7 +1,5 @@
 """Findings of a calibration in sentences: the answer first, then what it rests on."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import combinations
 from pathlib import Path
@@ -15,8 +13,7 @@ from impactlab.analysis.posterior import CONTRADICTED, FEWEST, NEGLIGIBLE, SILEN
 from impactlab.figures import labels, measures, record
 from impactlab.figures.calibration import calibration, measured_words
 from impactlab.figures.draw import draw
-from impactlab.report.listed import write_listed
-from impactlab.report.page import Cell, Entry, Row, Section, Table
+from impactlab.report.page import Cell, Entry, Row, Section, Table, write_listed
 from impactlab.solver.contact import CONTACT_LAWS, LawRecord
 from impactlab.study import CALIBRATION
 

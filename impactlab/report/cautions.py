@@ -1,7 +1,5 @@
 """Cautions about the results of a study, and notes on its physics."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import reduce
 from operator import and_

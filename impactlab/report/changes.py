@@ -1,7 +1,5 @@
 """Sentences on changes between studies: shares of parameters, or responses of grids."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,7 +11,7 @@ from impactlab.figures import access, labels, measures
 from impactlab.figures.studies import StudyResults, common_display, shared_family, shared_responses
 from impactlab.methods.record import Family, Measure
 from impactlab.report.answer import MINOR, packed
-from impactlab.report.effects import finite
+from impactlab.report.effects import finite, interval
 from impactlab.report.page import Entry
 from impactlab.report.ranking import share
 from impactlab.report.sensitivity import with_margin
@@ -276,7 +274,7 @@ def response_sentence(studies: Sequence[StudyResults], response: str) -> str:
     if max(-low, high) <= _SAME:
         return f"{head} changes by less than {labels.percent(_SAME)}"
     if low < -_SAME and high > _SAME:
-        return f"{head} changes by {_interval(low, high)}, most {values}"
+        return f"{head} changes by {interval(low, high)}, most {values}"
     verb, size = ("rises", high) if high > _SAME else ("falls", -low)
     return f"{head} {verb} by {'up to ' if where else ''}{labels.percent(size)}, {values}"
 
@@ -293,7 +291,7 @@ def response_entries(studies: Sequence[StudyResults], names: Sequence[str]) -> l
         if max(-low, high) <= _SAME:
             same.append(response)
         else:
-            changed.append(f"{response} {_interval(low, high)}")
+            changed.append(f"{response} {interval(low, high)}")
     entries = [("Changes of other responses", ", ".join(changed))] if changed else []
     none = f"Change by less than {labels.percent(_SAME)}"
     return [*entries, (none, labels.listing(same))] if same else entries
@@ -314,12 +312,6 @@ def _ratio(
     if change.notnull().any():
         return change, first, last
     return change, both[0], both[1]
-
-
-def _interval(low: float, high: float) -> str:
-    """Return two relative changes in per cent: "−2.4 to +12 %"."""
-    texts = [f"{'+' if end > 0 else ''}{labels.number(100 * end, 2)}" for end in (low, high)]
-    return f"{' to '.join(dict.fromkeys(texts))} %"
 
 
 def _known(values: xr.DataArray) -> Floats:

@@ -1,7 +1,5 @@
 """The comparison of several studies on one page: what differs, and what that changes."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from contextlib import ExitStack

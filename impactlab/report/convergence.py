@@ -1,7 +1,5 @@
 """Sections on convergence: the grid that each response needs, and tables per axis."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

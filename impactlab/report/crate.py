@@ -3,8 +3,6 @@
 Source: Sefton et al. (2020), RO-Crate Metadata Specification 1.1, doi:10.5281/zenodo.4031327.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import mimetypes

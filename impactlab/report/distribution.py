@@ -1,7 +1,5 @@
 """Distributions of the responses of a sample, their regimes, and limits: tables and sentences."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Effects of a grid's parameters on its responses, in sentences: direction, size, jump, or none."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterator
 from itertools import product
@@ -285,9 +283,13 @@ def _contrast(runs: xr.Dataset, name: str, dim: str) -> str:
     if not ratio.size or np.abs(ratio).max() > _FACTOR or bool((first == 0).any()):
         before, after = _range(runs, first, "–"), _range(runs, last, "–")
         return f"{after} instead of {before}"
-    ends = (100 * ratio[[0, -1]]).tolist()
-    changes = [f"{'+' if end > 0 else ''}{labels.number(end, 2)}" for end in ends]
-    return f"{' to '.join(dict.fromkeys(changes))} %"
+    return interval(*ratio[[0, -1]].tolist())
+
+
+def interval(low: float, high: float) -> str:
+    """Return two relative changes in per cent: "−2.4 to +12 %"."""
+    texts = [f"{'+' if end > 0 else ''}{labels.number(100 * end, 2)}" for end in (low, high)]
+    return f"{' to '.join(dict.fromkeys(texts))} %"
 
 
 def _by_word(runs: xr.Dataset, values: xr.DataArray, dim: str) -> str:

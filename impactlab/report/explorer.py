@@ -1,7 +1,5 @@
 """A page of sliders: the surrogates of a sample, evaluated in the browser as `predict` does."""
 
-from __future__ import annotations
-
 import math
 import shlex
 from dataclasses import asdict

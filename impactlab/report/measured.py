@@ -1,7 +1,5 @@
 """Measurements beside a study's models: a line of the answer, and a table."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 

@@ -1,7 +1,5 @@
 """The parameters that matter in a sample, in sentences."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 
@@ -10,11 +8,9 @@ from impactlab.figures.measures import MORRIS, SOBOL, Index, analysed
 from impactlab.methods.record import Family
 from impactlab.methods.runs import correlations
 from impactlab.report.page import Entry
-from impactlab.report.sensitivity import in_units, uncertainty, with_margin
+from impactlab.report.sensitivity import decimals_of, in_units, uncertainty, with_margin
 from impactlab.verification.functions import FUNCTIONS
 
-_COARSE, _SMALL = 0.02, 0.1
-"""Smallest half-width, and smallest share, that are given in whole per cent."""
 _MATTERS = 0.01
 """Smallest share of the largest index that is named, and largest total order without effect."""
 _INTERACTS = 0.02
@@ -162,8 +158,7 @@ def _written(
 
 def share(value: float, margin: float, error: float) -> str:
     """Return a share of the variance, its half-width and a numerical error that is larger."""
-    decimals = 0 if margin >= _COARSE and value >= _SMALL else 1
-    within = max(100 * margin, 0.1)
+    decimals, within = decimals_of(value, margin), max(100 * margin, 0.1)
     text = f"{100 * value:.{decimals}f} ± {within:.{decimals}f} %"
     return f"{text}, numerically {uncertainty(error)}" if error > margin else text
 

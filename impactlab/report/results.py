@@ -1,7 +1,5 @@
 """Stored results of a study: their kinds, how each is drawn and reported, and an index of all."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -19,8 +17,7 @@ from impactlab.files import check_source, checked, identity, opened, read_netcdf
 from impactlab.model.checks import did_you_mean
 from impactlab.report import study, verification
 from impactlab.report.answer import answers
-from impactlab.report.listed import listed_reports
-from impactlab.report.page import described, leading, write_page
+from impactlab.report.page import described, leading, listed_reports, write_page
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,6 @@ One parameter ranks before another only where their intervals, with the numerica
 overlap.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
@@ -146,7 +144,7 @@ def history_entries(analysis: xr.Dataset) -> list[tuple[str, str]]:
         indices, names = analysis.sel(history=history), measures.meanings(analysis)
         total, margin = (indices[name].values for name in (key, f"{key}_interval"))
         ranked = [i for i in np.argsort(-total, kind="stable") if total[i] > margin[i]][:_NAMED]
-        shares = [f"{names[i]} {share(total[i], margin[i])}" for i in ranked]
+        shares = [f"{names[i]} {_share(total[i], margin[i])}" for i in ranked]
         text = labels.listing(shares) or "no parameter exceeds its interval"
         if shares and not entries:
             text += " of the variance"
@@ -259,12 +257,16 @@ def _meanings(analysis: xr.Dataset, verdicts: str) -> list[tuple[str, str]]:
     return [(flag.words, flag.meaning) for flag in flags if flag.meaning]
 
 
-def share(value: float, margin: float, error: float = 0.0) -> str:
-    """Return a share with the half-width of its interval and the numerical error, if known."""
-    decimals = 0 if margin >= _COARSE and value >= _SMALL else 1
-    numerically = f", numerically {uncertainty(error)}" if error else ""
+def _share(value: float, margin: float) -> str:
+    """Return a share with the half-width of its interval."""
+    decimals = decimals_of(value, margin)
     within = f"± {100 * margin:.{decimals}f}" if margin >= 0.0005 else uncertainty(margin)
-    return f"{100 * value:.{decimals}f} % ({within}{numerically})"
+    return f"{100 * value:.{decimals}f} % ({within})"
+
+
+def decimals_of(value: float, margin: float) -> int:
+    """Return the decimals of a share in per cent: none where it and its half-width are large."""
+    return 0 if margin >= _COARSE and value >= _SMALL else 1
 
 
 def index_tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list[Table]:

@@ -1,7 +1,5 @@
 """Repeated strikes in the answer and in a table: what they leave, and when that no longer grows."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import product
 
@@ -13,7 +11,7 @@ from impactlab.figures.access import design_dims, usable
 from impactlab.figures.labels import display
 from impactlab.figures.strikes import DENT, longest, strike_series
 from impactlab.report.page import Cell, Entry, Row, Section, Table
-from impactlab.solver.growth import NO_GROWTH
+from impactlab.solver.outputs import NO_GROWTH
 from impactlab.types import Floats
 
 _DEFLECTION, _RESTITUTION = "residual_deflection_over_strikes", "restitution_over_strikes"

@@ -1,7 +1,5 @@
 """The report of a study: one HTML file that needs nothing else."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from typing import Any

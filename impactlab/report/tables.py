@@ -19,7 +19,7 @@ from impactlab.figures import access, labels, measures
 from impactlab.files import replaced
 from impactlab.methods import FAMILIES, INDICES
 from impactlab.report.answer import answers
-from impactlab.solver.growth import GROWING
+from impactlab.solver.outputs import GROWING
 from impactlab.validation.errors import unknown
 from impactlab.variables import FLAGS, MARKED, status_bits
 

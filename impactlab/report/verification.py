@@ -1,7 +1,5 @@
 """The report of a verification: the verdict first, failed checks before passed ones."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

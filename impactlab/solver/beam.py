@@ -20,8 +20,6 @@ M_0. M_0 changes only where sections yield, so a step is one loop over w, and th
 it, `plastic`, is kept from step to step.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -15,8 +15,6 @@ The extrapolated rate of the fastest motion, which changes sign with each step, 
 damper c (N s/m) counts as a stiffness 4 c/dt there: stability.py makes the time step smaller by it.
 """
 
-from __future__ import annotations
-
 from impactlab.solver.contact.history import Pair
 from impactlab.solver.contact.switch import damping
 from impactlab.solver.jit import compiled

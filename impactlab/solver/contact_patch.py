@@ -22,8 +22,6 @@ At the nodes p becomes forces by hat functions, which keep sum and centre: the m
 rest are exact at the nodes, even where the circle is smaller than a spacing.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.beam import SYMMETRIC, BeamGrid, BeamState, mirror

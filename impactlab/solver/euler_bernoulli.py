@@ -4,8 +4,6 @@ Ahead of the wave nothing moves, and between the wave's front and the first sect
 yielded the beam is elastic: such nodes take a shorter loop.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from impactlab.solver.beam import (

@@ -1,7 +1,5 @@
 """The event tracker: peaks and contact events, interpolated between the steps."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -10,8 +10,6 @@ Sections that yield by the rate (strain_rate.py) are on no tangent: they flow a 
 in which they are outside their static interval.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -19,8 +19,6 @@ whether a leap is clear. The largest deflection is looked for afterwards, in the
 it.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

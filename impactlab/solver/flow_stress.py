@@ -12,8 +12,6 @@ is dissipated, S_y p is counted as with linear hardening, and the rest, of sigma
 the trapezoidal rule.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

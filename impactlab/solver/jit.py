@@ -1,7 +1,5 @@
 """The decorators of this solver's kernels (see impactlab.jit), and their sources' hash."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from impactlab.jit import Compiler
@@ -15,7 +13,6 @@ FOLDER = _COMPILER.folder
 
 compiled = _COMPILER.decorator()
 """It can neither make arrays nor free any: what a kernel works on belongs to its caller."""
-called_from_python = _COMPILER.decorator(from_python=True)
 allocating = _COMPILER.decorator(allocates=True)
 """A record of an array does not keep it alive here, so arrays of records come from Python."""
 vectorised = _COMPILER.decorator(fastmath=True)

@@ -3,8 +3,6 @@
 Each is compiled by itself, so that a study compiles only what it needs.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from threading import Lock
 from typing import Any
@@ -215,18 +213,13 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     final state, at rest after several strikes; length 0 for none. A model whose sections have P
     fibres, outermost below first, fills (R, nodes, P). A run that diverges leaves NaN and its
     status.
-
-    A record does not keep its array alive in compiled code, so kernels make no arrays of records:
-    those of all runs are the caller's, who holds them until this returns.
     """
     make, renew, take, deflect = model.make, model.renew, model.take, model.deflect
     join, read = (None, None) if model.further is None else model.further[:2]
     divide = _division(join is not None)
     run = _run(model, extended)
-    make_section_room, cut = model.section or (
-        make_room,
-        _section_at_rate if extended else cut_section,
-    )
+    of_fibres = make_room, _section_at_rate if extended else cut_section
+    make_section_room, cut = model.section or of_fibres
 
     def kernel(
         cases: Array,

@@ -25,8 +25,6 @@ force, duration and indentations of a first contact by 0.6 % at most (three beam
 what a held kink does to the deflection after it has not been compared with 3-D.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.beam import PINNED, SYMMETRIC, BeamGrid, BeamState, mirror

@@ -4,8 +4,6 @@ m_s w_s'' = -F + m_s g, w_s(0) = 0, w_s'(0) = v0; indentation delta = w_s - w(L/
 mean under the contact's pressure (contact_patch.py).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 
@@ -250,8 +248,7 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
     """Return the time loop of a model of the beam; extended: see kernels.py."""
     move_beam, mid_curvature, spread = model.step, model.curvature, model.spread
     flight_stride, fly = model.flight_stride, None if model.flight is None else _leaps(model.flight)
-    touch, imbalance = contact_of(model, extended), _audit(model)
-    touch_down = _touch_down(model)
+    touch, touch_down, imbalance = contact_of(model, extended), _touch_down(model), _audit(model)
 
     @inlined
     def march(
@@ -265,11 +262,11 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
         interval: int,
         now: int,
     ) -> int:
-        """March from first touch to the end; return which row of beam.w is the last, or -1.
+        """March from first touch to the end; return the last row of beam.w, or -1: it diverged.
 
-        -1: it diverged. contact and events are kept up to date. strike: how many came before.
-        interval: number of steps until the next on the moving beam, with the sphere taken away once
-        `steps` are over, if it leaves; 0: none follows. now: the first row.
+        contact and events are kept up to date. strike: how many came before. interval: number of
+        steps until the next on the moving beam, with the sphere taken away once `steps` are over,
+        if it leaves; 0: none follows. now: the first row.
         """
         pair, section, grid, beam, plastic = state[:5]
         w, u, dt, mid = beam.w, beam.u, grid.dt, grid.mid
@@ -280,8 +277,7 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
         # a plain 0 would be a type of its own, and its callees compiled twice
         step = int(np.int64(0))
         to_audit, end = stride, steps
-        here = (0.0, 0.0, 0.0, 0.0, 0.0)
-        ahead = 0.0  # the mean under the pressure, of mid-span
+        here, ahead = (0.0, 0.0, 0.0, 0.0, 0.0), 0.0  # the mean under the pressure, of mid-span
         while step <= end:
             t, u_mid = step * dt, u[mid]
             w_mid = w[now, mid] - kink.height(grid, contact.kink)
@@ -311,7 +307,6 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
             if extended and case.load == CONTACT_PATCH and F > 0.0:
                 change, excess = spread(state, now, F, contact_radius(contact, pair, F))
                 ahead += change
-
             to_audit = min(to_audit - 1, stride) if F > 0.0 else to_audit - 1
             if to_audit == 0 or step == end:
                 to_audit = max(stride, flight_stride)

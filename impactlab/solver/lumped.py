@@ -5,8 +5,6 @@ that has the kinetic energy of the static shape (Rayleigh). Source: Wang et al.,
 paper names. The deflection between support and mid-span is the static one.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -13,9 +13,8 @@ M_0 = M + (EI)_q kappa. D is exact for forces that are constant from t - dt to t
 1961); for others the step is of second order. Beyond omega dt = pi/2, D stays at 2: such modes
 follow quasi-statically in the mean of two steps, which bounds the time step by the contact alone.
 
-So do the modes left out: all with D = 2 obey one equation, so that their sum, which adds to w at
-mid-span, goes as one mode under F alone. It has the flexibility that the others lack of
-L^3/(48 (EI)_q), and the D of the first of them.
+So do the modes left out: all with D = 2 obey one equation, so that their sum goes as one mode under
+F alone. It has the flexibility that the others lack of L^3/(48 (EI)_q), and the D of the first.
 
 It is leapfrog with the masses K dt^2/D, so it conserves as exactly the energy
 
@@ -26,8 +25,6 @@ step has the eigenvalues of D^(1/2) (1 - Pi) D^(1/2), which lie between 0 and 2.
 
 Source: W. Gautschi, Numer. Math. 3 (1961) 381; Hochbruck, Lubich, Numer. Math. 83 (1999) 403.
 """
-
-from __future__ import annotations
 
 import math
 

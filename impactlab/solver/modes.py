@@ -5,8 +5,6 @@ all modes left out. They are sines in a pinned half beam; of others, a table com
 (model/beam_modes.py), which `take_modes` hands on.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

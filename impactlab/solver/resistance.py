@@ -16,8 +16,6 @@ that step's work still to give:
 which closes the balance of energy to round-off. Source: Rayleigh, Theory of Sound, section 102.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

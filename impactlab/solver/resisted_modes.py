@@ -23,8 +23,6 @@ modes: at -1 a mode counts by D/(2 + 2 g - D) = |tanh((r + i theta_d)/2)|^2 wher
 tan^2(theta/2), which is no less. Leaps (flight.py) are of undamped modes: a damped run has none.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

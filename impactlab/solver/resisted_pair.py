@@ -6,8 +6,6 @@ and the work of damping are as in resistance.py: the mass's damping is central, 
 by half a step.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -8,8 +8,6 @@ those of resisted_pair.py. The forces of the stiffness's damping are those of th
 moments on the last steps of w and psi, which a half step has.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from impactlab.solver.beam import BeamGrid, BeamState, mirror

@@ -12,8 +12,6 @@ small ones this is Rayleigh's damping of Euler-Bernoulli's beam. Steps and the w
 those of resisted_pair.py.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from impactlab.solver.beam import CLAMPED, SPRUNG, SYMMETRIC, BeamGrid

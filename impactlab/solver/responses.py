@@ -4,8 +4,6 @@ Names, units and meanings: outputs.py. Each function fills the responses that th
 a blank record, and says in its bits why others are missing.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -9,10 +9,9 @@ over the fibres.
 A fibre is mapped back to the yield surface, with linear hardening, in one dimension:
 stress = E (strain - plastic_strain); yield: |stress - H_k plastic_strain| <= S_y + H_i peeq.
 All moduli and stresses in Pa. Source: the standard closest-point return, exact for linear
-hardening (Simo and Hughes, Computational Inelasticity, box 1.5).
+hardening (Simo and Hughes, Computational Inelasticity, box 1.5). Where the section stretches, too,
+fibres yield under both strains together.
 """
-
-from __future__ import annotations
 
 import math
 from typing import NamedTuple
@@ -21,7 +20,7 @@ import numpy as np
 
 from impactlab.solver.jit import allocating, compiled, summing
 from impactlab.solver.strain_rate import RateLaw, overstress, rate_law
-from impactlab.solver.types import ELASTIC, Array, Record
+from impactlab.solver.types import ELASTIC, Array, Index, Record
 
 FAR = 1e300
 """A curvature that no section reaches (1/m)."""
@@ -304,3 +303,41 @@ def tangent(
         elif direction * (limit - end) > 0.0:
             limit = end
     return growth, limit
+
+
+@compiled
+def strain_fibres(
+    section: FibreSection,
+    rate: RateLaw | None,
+    e: float,
+    kappa: float,
+    before: tuple[float, float],
+    dt: float,
+    plastic_strain: Array,
+    peeq: Array,
+    i: Index,
+) -> tuple[float, float, float, float]:
+    """Take the fibres of section i to the strain e of the axis and the curvature kappa (1/m).
+
+    Updates row i of plastic_strain and peeq, shape (sections, P). before: e and kappa at the
+    last look, where fibres flow by the rate a time dt (s) ago. Returns (N_0 in N, M_0 in N m, the
+    strain that no fibre yields by, work of the overstress in J/m).
+    """
+    z, (E, S_y, H_i, H_k) = section.z, section.moduli
+    N_0, M_0, room, work = 0.0, 0.0, FAR, 0.0
+    for j in range(z.size):
+        strain, slipped, now = plastic_strain[i, j], peeq[i, j], e - z[j] * kappa
+        if rate is not None and rate.D > 0.0:
+            trial, growth = E * now - (E + H_k) * strain, E * (now - before[0] + z[j] * before[1])
+            strain, slipped, lost = flow_at_rate(
+                section.moduli, rate, trial, growth, strain, slipped, dt
+            )
+            work += lost * section.area[j]
+        else:
+            strain, slipped = return_mapping(now, strain, slipped, E, S_y, H_i, H_k)
+        plastic_strain[i, j], peeq[i, j] = strain, slipped
+        N_0 -= E * section.area[j] * strain
+        M_0 -= section.lever[j] * strain
+        least, largest = elastic_range(strain, slipped, E, S_y, H_i, H_k)
+        room = min(room, largest - now, now - least)
+    return N_0, M_0, room, work

@@ -15,8 +15,6 @@ A section that rest would bend beyond its elastic interval yields, and the shape
 turns, which only lowers the energy. Since a beam swings about its rest, that is rare.
 """
 
-from __future__ import annotations
-
 from impactlab.solver.beam import (
     CLAMPED,
     PINNED,

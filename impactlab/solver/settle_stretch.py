@@ -19,8 +19,6 @@ beam that swings through to that one while it comes to rest is not followed (P. 
 Yu, J. Appl. Mech. 52 (1985) 517, recalled).
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.beam import CLAMPED, PINNED, SPRUNG, SYMMETRIC, BeamGrid, is_end

@@ -15,8 +15,6 @@ The balance of energy has what each sphere has lost since its touch, and what it
 Leaps (flight.py) are made until the first of these spheres comes.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

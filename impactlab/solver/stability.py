@@ -33,8 +33,6 @@ beta omega^2 dt/4 to h, of the first term, with which dt^2 omega^2 + 2 beta dt o
 of the mass, which is central, and that of modes (resisted_modes.py) change nothing.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.beam import PINNED, SPRUNG, BeamGrid, half_spacings, make_grid

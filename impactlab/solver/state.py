@@ -1,7 +1,5 @@
 """The state of a run, and the functions that a model of the beam is made of."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, NamedTuple
 

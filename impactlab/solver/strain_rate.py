@@ -16,8 +16,6 @@ in Applied Mechanics 9 (1966) 243; Johnson, Cook, 7th International Symposium on
 541. All as remembered.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -34,8 +34,6 @@ eq. 47; the free strip's frequency, the same as a free beam's, Rayleigh, Theory 
 (both recalled).
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -6,8 +6,6 @@ elastic. w and M at nodes, psi and Q half-way to the next node. Source: S. Timos
 (1921) 744.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The types of the kernels' arguments and results, and the record of a case."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

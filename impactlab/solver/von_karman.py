@@ -27,8 +27,6 @@ Source: T. von Karman, Encyklopaedie der mathematischen Wissenschaften IV/4 (191
 Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35 (both recalled).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -62,12 +60,12 @@ from impactlab.solver.section import (
     FibreSection,
     cut_whole_section,
     make_whole_room,
+    strain_fibres,
 )
 from impactlab.solver.settle import ROUNDS, rest_nodes
 from impactlab.solver.settle_stretch import static_axis, static_stretch
 from impactlab.solver.state import BeamModel, State
 from impactlab.solver.strain_rate import RateLaw
-from impactlab.solver.stretched_fibres import strain_fibres
 from impactlab.solver.types import ONE, Array, Record
 
 _SMALL = 1e-9

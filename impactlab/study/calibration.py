@@ -1,7 +1,5 @@
 """Calibration of a study: its sample under each contact law, its posterior, runs to confirm it."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace

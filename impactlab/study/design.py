@@ -1,7 +1,5 @@
 """Designs: the coordinates of all runs of a study, and larger ones of the same study."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from math import prod
@@ -15,7 +13,7 @@ import xarray as xr
 from impactlab.methods.grid import Grid
 from impactlab.methods.runs import listed
 from impactlab.methods.sobol import Sobol
-from impactlab.model.further_spheres import sphere_rows
+from impactlab.model.bodies import sphere_rows
 from impactlab.model.parameters import fixed_values, with_values
 from impactlab.study.schema.consistency import further_models, values_of
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy, ImpactStudy

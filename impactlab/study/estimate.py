@@ -1,7 +1,5 @@
 """The cost of a study, before anything is drawn or solved, and its limits."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

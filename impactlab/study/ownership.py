@@ -4,8 +4,6 @@ A study's runs.nc is written anew without asking by its own file, whatever was e
 a study of the same runs. The runs of an earlier text stay in the shards.
 """
 
-from __future__ import annotations
-
 import json
 import logging
 import os

@@ -4,8 +4,6 @@ A process draws its range block by block, and writes each block, parameters incl
 shard). Parts that are started again solve what is missing.
 """
 
-from __future__ import annotations
-
 import json
 import logging
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Progress bars on the terminal's error stream or in a notebook, silent elsewhere."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -1,9 +1,8 @@
 """The probability of a rare event from runs of a study's solver, kept and found again on disk."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 import scipy  # its stats are loaded when first used
@@ -50,7 +49,7 @@ class LimitRuns:
     units: str = ""
 
     @classmethod
-    def of(cls, study: AnyStudy, folder: Path, engine: Engine, kind: str) -> LimitRuns:
+    def of(cls, study: AnyStudy, folder: Path, engine: Engine, kind: str) -> Self:
         """Return the runs of a study, kept in `folder`/`kind`.
 
         Raises StudyError for a study without a sample or with other than one limit, ValueError

@@ -1,7 +1,5 @@
 """The best design of a study whose probability of exceeding a limit is small enough."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Mistakes in a study, in words for the person who wrote it."""
 
-from __future__ import annotations
-
 import reprlib
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Values that the model refuses, by the names of parameters."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

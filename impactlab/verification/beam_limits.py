@@ -1,7 +1,5 @@
 """Limits of the elastic beam: infinitely long, and infinitely slender."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

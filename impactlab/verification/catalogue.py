@@ -1,7 +1,5 @@
 """The table of checks. A new check is a function marked `@check` in the module of its subject."""
 
-from __future__ import annotations
-
 from impactlab.verification import (
     beam_limits,
     energy,

@@ -1,7 +1,5 @@
 """Energy and momentum: sums over the dataset of an impact, and balances of random cases."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A check, what it finds (comparisons, and curves to draw), and how it ends."""
 
-from __future__ import annotations
-
 import logging
 import re
 import traceback

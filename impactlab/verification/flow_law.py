@@ -1,15 +1,12 @@
 """Checks of a flow law from outside, and its numbers for steel."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from impactlab.copies import Copies
 from impactlab.model.flow_law import FlowLaw
-from impactlab.solver.jit import compiled
+from impactlab.verification.law_record import compiled_functions
 
 METALS = ((206e9, 345e6), (70e9, 250e6), (3e9, 60e6))
 """E and S_y (Pa) of steel, aluminium and a polymer."""
@@ -21,25 +18,7 @@ _PRINTED = ((0.002, 0.0), (0.05, 0.0), (0.05, 1e3))
 
 @lru_cache(maxsize=8)
 def _compiled(law: FlowLaw) -> Any:
-    """Return the law's function, compiled for itself. Raises ValueError where it cannot be."""
-
-    def finish(original: Any, copy: Any) -> Any:
-        copy.__qualname__ += f"_alone_{law.source_hash}"
-        return compiled(copy)
-
-    function = Copies(finish).of(law.flow_stress)
-    try:
-        stress = function(0.01, 1.0, *METALS[0])
-    except Exception as error:  # of numba, many kinds
-        reason = " ".join(str(error).strip().splitlines()[:4])
-        raise ValueError(
-            f"flow law {law.name!r}: numba cannot compile flow_stress: {reason}"
-        ) from None
-    if not isinstance(stress, float):
-        raise ValueError(
-            f"flow law {law.name!r}: flow_stress returns {stress!r}: expected one float"
-        )
-    return function
+    return compiled_functions(law, {"flow_stress": (0.01, 1.0, *METALS[0])})["flow_stress"]
 
 
 def refusals(law: FlowLaw) -> list[str]:

@@ -3,8 +3,6 @@
 They take the place of the solver where a whole study, from its file to its report, is tested.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -6,10 +6,9 @@ prints them as lines of the record of law NAME in solver/contact/__init__.py. A 
 listed there first, if only with its texts. All is for steel: E* = 115 GPa, S_y = 345 MPa, nu = 0.3.
 """
 
-from __future__ import annotations
-
 import math
 import sys
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from functools import lru_cache
 from itertools import pairwise
@@ -21,6 +20,7 @@ from scipy.integrate import quad
 from impactlab.copies import Copies
 from impactlab.model.checks import one_of
 from impactlab.model.contact_law import ContactLaw
+from impactlab.model.flow_law import FlowLaw
 from impactlab.solver.contact import CONTACT_LAWS, LAWS, LawRecord
 from impactlab.solver.contact.switch import curve, limit
 from impactlab.solver.jit import compiled
@@ -78,23 +78,30 @@ def _limit(name: str | ContactLaw) -> float:
 
 @lru_cache(maxsize=8)
 def _compiled(law: ContactLaw) -> dict[str, Any]:
-    """Return a law's functions, compiled for themselves, under names of their own.
-
-    Raises ValueError where numba cannot compile one, or it returns something else.
-    """
-
-    def finish(original: Any, copy: Any) -> Any:
-        copy.__qualname__ += f"_alone_{law.source_hash}"
-        return compiled(copy)
-
-    copies, delta = Copies(finish), 1e-3 * STEEL[1]
+    delta = 1e-3 * STEEL[1]
     arguments: dict[str, tuple[float, ...]] = {
         "curve": (delta, *STEEL),
         "limit": STEEL,
         "radius": (delta, *STEEL),
         "damping": (1.0, delta, 0.1, *STEEL),
     }
-    functions = {}
+    return compiled_functions(law, arguments)
+
+
+def compiled_functions(
+    law: ContactLaw | FlowLaw, arguments: Mapping[str, tuple[float, ...]]
+) -> dict[str, Any]:
+    """Return a law's functions, compiled for themselves, under names of their own.
+
+    arguments: to try each with. Raises ValueError where numba cannot compile one, or it returns
+    something else.
+    """
+
+    def finish(original: Any, copy: Any) -> Any:
+        copy.__qualname__ += f"_alone_{law.source_hash}"
+        return compiled(copy)
+
+    copies, functions = Copies(finish), {}
     for part, values in arguments.items():
         if getattr(law, part) is None:
             continue
@@ -102,17 +109,17 @@ def _compiled(law: ContactLaw) -> dict[str, Any]:
         try:
             answer = functions[part](*values)
         except Exception as error:  # of numba, many kinds
-            reason = str(error).strip().splitlines()
+            reason = " ".join(str(error).strip().splitlines()[:4])
             raise ValueError(
-                f"contact law {law.name!r}: numba cannot compile {part}: {' '.join(reason[:4])}"
+                f"{law.kind} {law.name!r}: numba cannot compile {part}: {reason}"
             ) from None
-        is_tuple = isinstance(answer, tuple)
-        if (is_tuple and len(answer) == 4) != (part == "curve") or not all(
-            isinstance(number, float) for number in (answer if is_tuple else [answer])
-        ):
-            expected = "(F, K, delta_r, n), four floats" if part == "curve" else "one float"
+        size, expected = 1, "one float"
+        if part == "curve":
+            size, expected = 4, "(F, K, delta_r, n), four floats"
+        numbers = answer if size > 1 and isinstance(answer, tuple) else (answer,)
+        if len(numbers) != size or not all(isinstance(number, float) for number in numbers):
             raise ValueError(
-                f"contact law {law.name!r}: {part} returns {answer!r}: expected {expected}"
+                f"{law.kind} {law.name!r}: {part} returns {answer!r}: expected {expected}"
             )
     return functions
 

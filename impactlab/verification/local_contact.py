@@ -1,7 +1,5 @@
 """Local compliance, strips and circle of contact against modal series; a prestressed contact."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

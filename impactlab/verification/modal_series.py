@@ -1,7 +1,5 @@
 """The elastic beam under Hertz contact against the modal series of its theory."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain

@@ -5,8 +5,6 @@ one it belongs to. The points of all curves follow one another on `point` (conti
 of the CF conventions).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The beam bent slowly and beyond yield: section, static load, collapse, and one plastic hinge."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -19,7 +17,7 @@ from impactlab.solver import RULES, section
 from impactlab.types import Floats
 from impactlab.verification.cases import with_beam_material
 from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, check
-from impactlab.verification.solutions import beam_modes, bending, collapse, fibre_beam, quadrature
+from impactlab.verification.solutions import beam_modes, bending, fibre_beam, quadrature
 
 _HARDENING = {
     "perfectly plastic": {},
@@ -152,7 +150,7 @@ def _slow_impact(beam: Beam, mass: float, velocity: float, softness: float) -> I
 
 
 @check(
-    "Static collapse", "Prager and Hodge 1951, chapter 2; impactlab.verification.solutions.collapse"
+    "Static collapse", "Prager and Hodge 1951, chapter 2; impactlab.verification.solutions.bending"
 )
 def static_collapse() -> Finding:
     """Compare load against deflection, plateau, permanent deflection; plateaus of coarse rules.
@@ -211,7 +209,7 @@ def _on_loading(run: xr.Dataset) -> tuple[Floats, Floats]:
 
 
 def _static(beam: Beam, deflections: Floats) -> Floats:
-    return np.array([collapse.load_at(beam, float(w)) for w in deflections])
+    return np.array([bending.load_at(beam, float(w)) for w in deflections])
 
 
 def _plateau(run: xr.Dataset) -> float:
@@ -226,7 +224,7 @@ _MODE_GRID = Discretisation(nodes=101, points=40, rule="layers")
 
 @check(
     "Rigid-plastic mode",
-    "Martin and Symonds 1966; Jones, Structural Impact; impactlab.verification.solutions.collapse",
+    "Martin and Symonds 1966; Jones, Structural Impact; impactlab.verification.solutions.bending",
 )
 def rigid_plastic_mode() -> Finding:
     """Compare permanent deflection and duration with the mode, and the approach to it."""
@@ -237,17 +235,17 @@ def rigid_plastic_mode() -> Finding:
     for mass in (heavy, 20.0, 5.0):
         impact, run = _struck(mass, ratio := float(ratios[-1]))
         comparisons.at(f"energy ratio {ratio:g}, mass ratio {mass:g}; mode")
-        left, deflection = _permanent_deflection(run), collapse.mode_deflection(impact)
+        left, deflection = _permanent_deflection(run), bending.mode_deflection(impact)
         stop = float(run.time[int(np.argmax(run.midspan_deflection.values))])
         comparisons.relative("permanent deflection", "m", left, deflection, 1e-2)
-        time = collapse.mode_duration(impact)
+        time = bending.mode_duration(impact)
         comparisons.relative("time to the largest deflection", "s", stop, time, 1e-2)
     permanents, modes, expected = [], [], []
     for ratio in ratios.tolist():
         impact, run = _struck(heavy, ratio)
         permanents.append(_permanent_deflection(run))
-        modes.append(collapse.mode_deflection(impact))
-        expected.append(collapse.elastic_plastic_deflection(impact))
+        modes.append(bending.mode_deflection(impact))
+        expected.append(bending.elastic_plastic_deflection(impact))
         where = f"energy ratio {ratio:g}, mass ratio {heavy:g}; mode and elastic bending"
         values = permanents[-1], expected[-1]
         comparisons.at(where).relative("permanent deflection", "m", *values, 5e-3)
@@ -269,8 +267,8 @@ def _struck(mass_ratio: float, energy_ratio: float) -> tuple[Impact, xr.Dataset]
     paper = with_beam_material(paper_impact(1.0, "hertz"), yield_stress=20e6)
     mass = mass_ratio * paper.beam.mass_per_length * paper.beam.span
     slow = replace(paper, sphere=replace(paper.sphere, mass=mass), gravity=0.0)
-    impact = replace(slow, velocity=math.sqrt(energy_ratio / collapse.energy_ratio(slow)))
-    duration = 1.3 * collapse.mode_duration(impact) + 5e-3
+    impact = replace(slow, velocity=math.sqrt(energy_ratio / bending.energy_ratio(slow)))
+    duration = 1.3 * bending.mode_duration(impact) + 5e-3
     return impact, run_dataset(impact, _MODE_GRID, duration=duration, samples=4001)
 
 

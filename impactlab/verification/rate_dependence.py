@@ -1,7 +1,5 @@
 """Yielding at a strain rate: closed forms of section and contact, and both schemes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

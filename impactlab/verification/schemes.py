@@ -1,7 +1,5 @@
 """The grid and the schemes: orders of convergence, errors, and the stability of random cases."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Symmetries of the model: similarity and systems of units, and reversal of time."""
 
-from __future__ import annotations
-
 import math
 import re
 from abc import ABC, abstractmethod

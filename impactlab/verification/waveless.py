@@ -3,8 +3,6 @@
 Half-space: a beam too heavy to move.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +15,7 @@ from impactlab.verification.cases import Sweep, elastic, rigid_backed
 from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, check
 from impactlab.verification.solutions import hertz, lumped, modal
 from impactlab.verification.solutions.contact_laws import LAWS, LawOnHalfSpace, law_on_half_space
-from impactlab.verification.solutions.hunt_crossley import HuntCrossleyImpact
+from impactlab.verification.solutions.hertz import HuntCrossleyImpact
 from impactlab.verification.solutions.stronge import stronge_impact
 
 # With so small a Courant number the contact alone determines the time step.
@@ -130,7 +128,7 @@ def _force_curves(run: xr.Dataset, law: LawOnHalfSpace, mass: float) -> list[Cur
 
 @check(
     "Viscous contact on a half-space",
-    "Hunt and Crossley 1975; the first integral in impactlab.verification.solutions.hunt_crossley",
+    "Hunt and Crossley 1975; the first integral in impactlab.verification.solutions.hertz",
 )
 def viscous_contact() -> Finding:
     """Compare restitution, peak force, indentation and dissipation, and the order in time."""

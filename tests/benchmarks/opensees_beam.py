@@ -13,7 +13,7 @@ import numpy as np
 import openseespy.opensees as ops
 
 import impactlab as il
-from impactlab.model.integration import integration_rule
+from impactlab.model.discretisation import integration_rule
 
 POINTS = 9
 LAYERS = {"flange": 8, "web": 40}

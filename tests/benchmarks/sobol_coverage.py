@@ -18,9 +18,9 @@ from rich.console import Console
 from rich.table import Table
 
 from impactlab.methods import sobol
+from impactlab.methods.record import SensitivityVerdict
 from impactlab.methods.runs import Sample
 from impactlab.methods.saltelli import REPLICATES, saltelli
-from impactlab.methods.verdict import SensitivityVerdict
 
 SEEDS = int(sys.argv[1]) if len(sys.argv) > 1 else 200
 SIZES = (16, 64, 256, 1024, 2048)

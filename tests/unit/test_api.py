@@ -22,7 +22,7 @@ from impactlab.methods.distributions import ENTRIES, Entry, Fixed
 from impactlab.methods.sampling import Sampling
 from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.study.schema.readers import read_study
-from impactlab.validation.stated import plain
+from impactlab.validation.fields import plain
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 

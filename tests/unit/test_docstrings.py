@@ -10,7 +10,7 @@ import pytest
 from sphinx.ext.napoleon import Config, NumpyDocstring
 
 import impactlab as il
-from impactlab.validation.stated import Stated
+from impactlab.validation.fields import Stated
 
 RETURNED = {
     "Animation": "impactlab.figures.animation",

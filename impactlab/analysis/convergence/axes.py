@@ -7,8 +7,6 @@ given. Source: Bazant and Planas (1998), Fracture and Size Effect, ch. 8 (locali
 materials that do not harden).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -17,9 +15,8 @@ import numpy as np
 import xarray as xr
 
 from impactlab import wings
+from impactlab.analysis.convergence.extrapolation import Behaviour, Expansion
 from impactlab.analysis.convergence.judgement import AxisVerdict, How, Judgement, judge
-from impactlab.analysis.convergence.least_squares import Expansion
-from impactlab.analysis.convergence.richardson import Behaviour
 from impactlab.methods.runs import usable
 from impactlab.types import Floats
 from impactlab.verdicts import TOLERANCE, Verdict, flagged, verdict_variables

@@ -11,20 +11,18 @@ that have a sound verdict (1,500 draws of each; three grids of ratio 2: orders 1
 noise 93, 92 and 94 %, noise alone 95 %).
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from impactlab.analysis.convergence import least_squares, richardson
-from impactlab.analysis.convergence.least_squares import Expansion
-from impactlab.analysis.convergence.richardson import (
+from impactlab.analysis.convergence import extrapolation
+from impactlab.analysis.convergence.extrapolation import (
     SAFETY_CREDIBLE,
     SAFETY_DOUBTFUL,
     Behaviour,
+    Expansion,
     ThreeGrids,
     relative,
 )
@@ -102,26 +100,26 @@ def _of_present(f: Floats, h: Floats) -> tuple[Floats, How]:
     if f.size == 2:
         first_order = abs(f[1] - f[0]) / (h[1] / h[0] - 1.0)
         return apart + SAFETY_DOUBTFUL * float(first_order), How.TWO_GRIDS
-    triples = [richardson.estimate(f[i : i + 3], h[i : i + 3]) for i in range(f.size - 2)]
+    triples = [extrapolation.estimate(f[i : i + 3], h[i : i + 3]) for i in range(f.size - 2)]
     finest, steps = triples[0], np.diff(f)
-    fitted = least_squares.fit(f, h) if f.size >= least_squares.FEWEST else None
+    fitted = extrapolation.fit(f, h) if f.size >= extrapolation.FEWEST else None
     # An order above 0.5, of the three finest grids or of all of four or more, slows a drift down.
-    least, monotone = richardson.CREDIBLE_ORDERS[0], finest.behaviour is Behaviour.MONOTONE
+    least, monotone = extrapolation.CREDIBLE_ORDERS[0], finest.behaviour is Behaviour.MONOTONE
     slows_down = (monotone and finest.order >= least) or (fitted and fitted.free_order >= least)
     if not slows_down and ((steps > 0).all() or (steps < 0).all()):
         drift = apart + SAFETY_DOUBTFUL * finest.error
         return (drift, How.SLOW_DRIFT) if monotone else nothing
     if h[-1] < NARROW * h[0]:
         return apart + _by_range(f, h), How.NARROW
-    error = richardson.safety(triples) * finest.largest_error
-    if finest.credible and not richardson.confirmed(triples):
+    error = extrapolation.safety(triples) * finest.largest_error
+    if finest.credible and not extrapolation.confirmed(triples):
         # Noise raises an order of 1 to 2 easily, and such an index is a third of the error.
         error = max(error, SAFETY_DOUBTFUL * finest.first_order_error)
     by_index = apart + error
     if fitted is None:
         by_range = apart + _by_range(f, h)
         return (by_index, How.GCI) if finest.credible else (by_range, How.RANGE)
-    by_fit = least_squares.uncertainty(fitted, f)
+    by_fit = extrapolation.uncertainty(fitted, f)
     if not finest.credible:
         return np.maximum(by_fit, apart + SAFETY_DOUBTFUL * float(np.ptp(f[:3]))), How.FIT
     # Scatter passes for an order easily: the index alone would hold the limit in 6 of 10 cases.
@@ -200,14 +198,15 @@ def judge(values: Floats, spacings: Floats) -> Judgement:
     ValueError unless the spacings rise.
     """
     triples = [
-        richardson.estimate(values[i : i + 3], spacings[i : i + 3]) for i in range(len(values) - 2)
+        extrapolation.estimate(values[i : i + 3], spacings[i : i + 3])
+        for i in range(len(values) - 2)
     ]
-    finest, factor = triples[0], richardson.safety(triples)
+    finest, factor = triples[0], extrapolation.safety(triples)
     amounts, how = numerical_uncertainty(values, spacings)
     uncertainty = relative(amounts[0], values[0])
-    complete = len(values) >= least_squares.FEWEST and np.isfinite(values).all()
+    complete = len(values) >= extrapolation.FEWEST and np.isfinite(values).all()
     differ = complete and np.ptp(values) > ROUND_OFF * np.max(abs(values))
-    fitted = least_squares.fit(values, spacings) if differ else None
+    fitted = extrapolation.fit(values, spacings) if differ else None
     gci = finest.gci(factor)
     return Judgement(
         finest.order,
@@ -217,7 +216,7 @@ def judge(values: Floats, spacings: Floats) -> Judgement:
         finest.asymptotic_ratio,
         fitted.order if fitted else np.nan,
         fitted.extrapolated if fitted else np.nan,
-        relative(least_squares.uncertainty(fitted, values)[0], values[0]) if fitted else np.nan,
+        relative(extrapolation.uncertainty(fitted, values)[0], values[0]) if fitted else np.nan,
         uncertainty,
         fitted.expansion if fitted else Expansion.NONE,
         how,

@@ -4,8 +4,6 @@ The error of a rule need not follow a power of the points once fibres yield, so 
 fitted. A rule is judged by its own most points; other rules are other points of the grid.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 import xarray as xr

@@ -1,7 +1,5 @@
 """Sensitivity indices of a sample; where runs failed, a surrogate supplies their values."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -13,10 +11,17 @@ from numpy.typing import NDArray
 from impactlab.analysis import regimes
 from impactlab.analysis.surrogate.chaos import drawn, fewest_runs
 from impactlab.analysis.surrogate.from_runs import GOOD, Divided
-from impactlab.methods import INDICES, indices_of, sobol, verdict, verdict_name
-from impactlab.methods.record import BY_SAMPLES, PAIR, IndexVariable, Indices
+from impactlab.methods import INDICES, indices_of, sobol, verdict_name
+from impactlab.methods.record import (
+    BY_SAMPLES,
+    PAIR,
+    IndexVariable,
+    Indices,
+    SensitivityVerdict,
+    of_outputs,
+    remarks,
+)
 from impactlab.methods.runs import Sample, correlations, labels, listed, usable
-from impactlab.methods.verdict import SensitivityVerdict
 from impactlab.types import Floats
 from impactlab.verdicts import flagged
 
@@ -140,7 +145,7 @@ def analysis(runs: xr.Dataset) -> xr.Dataset:
     first = [entry[0] for entry in verdicts]
     variables |= {
         "sensitivity_verdict": _worst(first, "the sensitivity indices"),
-        "sensitivity_remarks": verdict.remarks(first),
+        "sensitivity_remarks": remarks(first),
         "imputed_share": ("response", list(shares), supplied),
     }
     for number, record in enumerate(records if len(records) > 1 else ()):
@@ -165,7 +170,7 @@ def _answer(
         return [[filled.refusal]] * len(records), 0.0, {}
     complete = filled.outputs
     varying = [part for record in records for part in record.varying(complete, sample)]
-    verdicts = verdict.of_outputs(complete, varying, filled.share)
+    verdicts = of_outputs(complete, varying, filled.share)
     if (
         max(verdicts, default=0) < SensitivityVerdict.CONSTANT
         and regimes.of_sample(sample, outputs).size

@@ -12,8 +12,6 @@ kept, which is all that indices and intervals need, for as many times together a
 allows.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -22,11 +20,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from impactlab.analysis.sensitivity.indices import MOST_IMPUTED
-from impactlab.methods.estimators import half_width, leave_one_out
-from impactlab.methods.runs import Sample
+from impactlab.methods.record import WIDE, SensitivityVerdict, inconsistent
+from impactlab.methods.runs import Sample, half_width, leave_one_out
 from impactlab.methods.saltelli import ratios, statistics, step
 from impactlab.methods.sobol import FEWEST, JANON, JANSEN, Sobol, check
-from impactlab.methods.verdict import WIDE, SensitivityVerdict, inconsistent
 from impactlab.types import Floats
 from impactlab.variables import attributes, status_bits
 from impactlab.verdicts import ROUND_OFF, Verdict, flagged

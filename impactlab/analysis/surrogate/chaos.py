@@ -13,8 +13,6 @@ uniform parameter they are Legendre's, for a normal one Hermite's: Xiu and Karni
 J. Sci. Comput. 24, 619.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass

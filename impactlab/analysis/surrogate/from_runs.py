@@ -3,10 +3,8 @@
 The tests say how much of the variance a surrogate predicts, and how its error grows outwards.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import scipy  # its stats are loaded when first used
@@ -28,9 +26,9 @@ from impactlab.analysis.surrogate.chaos import (
 )
 from impactlab.methods import SAMPLES
 from impactlab.methods.distributions import DISTRIBUTIONS, distribution_of
+from impactlab.methods.record import MOSTLY
 from impactlab.methods.runs import Sample, correlations, labels, listed, usable
 from impactlab.methods.sampling import RandomSample
-from impactlab.methods.verdict import MOSTLY
 from impactlab.types import Floats
 from impactlab.verdicts import ROUND_OFF, Verdict, distinct, flagged
 
@@ -65,7 +63,7 @@ class Divided:
     _inputs: dict[bytes, Floats] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, runs: xr.Dataset) -> Divided:
+    def of(cls, runs: xr.Dataset) -> Self:
         """Divide runs. Raises ValueError where blocks do not fit."""
         sample = Sample.of(runs)
         name, count = str(runs.attrs.get("method")), runs.sizes["run"]

@@ -1,7 +1,5 @@
 """Stored surrogates: surrogate.nc, and predictions from it within the ranges of its runs."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -3,8 +3,6 @@
 Each model is taken on its finest grid, with its uncertainty.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

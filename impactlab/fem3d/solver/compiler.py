@@ -3,8 +3,6 @@
 Products may be fused with sums, but no sum is reordered: the same bits for any number of threads.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any, TypeAlias
 

@@ -1,6 +1,4 @@
-"""One impact on one mesh, solved and returned as a dataset."""
-
-from __future__ import annotations
+"""One impact on one mesh, solved and returned as a dataset, with snapshots of it."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,9 +9,8 @@ import xarray as xr
 
 from impactlab.fem3d.solver.compiler import COMPILER
 from impactlab.fem3d.solver.evaluation import fields, plastic_responses, responses
-from impactlab.fem3d.solver.frames import FRAMES, Frames
 from impactlab.fem3d.solver.march import Energies, History, March, Progress
-from impactlab.fem3d.solver.mesh import Mesh, check_mesh, impact_mesh
+from impactlab.fem3d.solver.mesh import Mesh, check_mesh, impact_mesh, plane_faces
 from impactlab.fem3d.solver.system import System, ThreadPool
 from impactlab.model.bodies import DAMPINGS
 from impactlab.model.checks import integer, positive
@@ -24,6 +21,44 @@ from impactlab.model.parameters import PARAMETERS, SECTION, flatten
 from impactlab.provenance import provenance
 from impactlab.types import Floats
 from impactlab.variables import described
+
+FRAMES = {
+    "field_time": ("s", "time of the fields since first touch"),
+    "section_position": ("m", "corners of the faces in the plane along the beam, x and z"),
+    "section_plastic_strain": ("1", "equivalent plastic strain (PEEQ) of their elements"),
+}
+"""Units and long_name of what a run keeps."""
+
+
+class Frames:
+    """Displaced corners of the plane's faces, and the strain of their elements, over time."""
+
+    def __init__(self, system: System) -> None:
+        """Keep the beginning."""
+        self._system = system
+        mesh = system.mesh
+        self._elements, self._nodes = plane_faces(mesh.nodes, mesh.elements, 1, mesh.element_size)
+        self._times, self._positions, self._strains = list[float](), list[Any](), list[Any]()
+        self.keep(0.0)
+
+    def keep(self, time: float) -> None:
+        """Keep the present state, as that at a time in s, unless that of this time is kept."""
+        if self._times and time <= self._times[-1]:
+            return
+        system = self._system
+        strain = fields(system.groups, len(system.mesh.elements))["equivalent_plastic_strain"]
+        self._times.append(time)
+        self._positions.append(system.x[self._nodes][..., [0, 2]])
+        self._strains.append(strain[self._elements])
+
+    def variables(self) -> dict[str, Any]:
+        """Return the variables FRAMES."""
+        dims = ("field_time", "face")
+        return {
+            "field_time": self._times,
+            "section_position": ((*dims, "face_corner", "section_axis"), np.array(self._positions)),
+            "section_plastic_strain": (dims, np.array(self._strains)),
+        }
 
 
 def solve(

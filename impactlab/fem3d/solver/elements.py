@@ -16,8 +16,6 @@ Source: the assumed strains follow T. Belytschko and L. P. Bindeman, Comput. Met
 Engng. 105 (1993) 225; the projection D. P. Flanagan and T. Belytschko (1981).
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.fem3d.solver.compiler import Array, compiled, inlined
@@ -37,6 +35,7 @@ from impactlab.fem3d.solver.hexahedron import (
     gather,
     gradient,
     load,
+    load_modes,
     mean_gradient,
     midway,
     nodal,
@@ -44,6 +43,7 @@ from impactlab.fem3d.solver.hexahedron import (
     scatter,
     shape,
     store,
+    store_modes,
     times,
     volume,
 )
@@ -169,7 +169,7 @@ def _answer_full(
                 yielding += _point(s, state, past, corner, lane, place, dt, metal, False, rate)
         _yield(s, past, corner, yielding)
     for lane in range(W):
-        nodal(s, lane, _load(s, _T, lane))
+        nodal(s, lane, load_modes(s, _T, lane))
 
 
 @inlined
@@ -321,8 +321,8 @@ def _raised(state: Array, row: int, lane: int, rise: Vector, q: Vector) -> tuple
 def _begin(s: Array, state: Array, lane: int, dt: float, metal: Metal) -> None:
     """Store the modes of the motion in `s`; update the mean stress, its work and its forces."""
     c, w = shape(s, X, lane), shape(s, V, lane)
-    _store(s, _C, lane, c)
-    _store(s, _W, lane, w)
+    store_modes(s, _C, lane, c)
+    store_modes(s, _W, lane, w)
     B = gradient(c)
     size = volume(c, B)
     L = midway(mean_gradient(w, B, size), dt)
@@ -353,7 +353,7 @@ def _point(
     Returns whether it yields.
     """
     xi, eta, zeta = place
-    r, v = _slopes(_load(s, _C, lane), place), _slopes(_load(s, _W, lane), place)
+    r, v = _slopes(load_modes(s, _C, lane), place), _slopes(load_modes(s, _W, lane), place)
     C = (cross(r[1], r[2]), cross(r[2], r[0]), cross(r[0], r[1]))  # cofactors of dx/dxi
     size = dot(r[0], C[0])
     share = 1.0 / size
@@ -370,7 +370,7 @@ def _point(
     # Forces that work on the derivatives by xi, eta and zeta, and those of the modes.
     t1, t2 = times(0.125, apply(T, C[0])), times(0.125, apply(T, C[1]))
     t3 = times(0.125, apply(T, C[2]))
-    f1, f2, f3, f4, f5, f6, f7 = _load(s, _T, lane)
+    f1, f2, f3, f4, f5, f6, f7 = load_modes(s, _T, lane)
     forces = (
         add(f1, t1),
         add(f2, t2),
@@ -380,7 +380,7 @@ def _point(
         plus(plus(f6, eta, t1), xi, t2),
         plus(plus(plus(f7, eta * zeta, t1), zeta * xi, t2), xi * eta, t3),
     )
-    _store(s, _T, lane, forces)
+    store_modes(s, _T, lane, forces)
     return _raise(s, lane, dp, along)
 
 
@@ -394,23 +394,3 @@ def _slopes(c: Shape, place: Vector) -> Tensor:
         plus(plus(plus(c2, zeta, g1), xi, g3), zeta * xi, g4),
         plus(plus(plus(c3, eta, g1), xi, g2), xi * eta, g4),
     )
-
-
-@inlined
-def _load(s: Array, row: int, lane: int) -> Shape:
-    """Return the seven vectors in rows from `row` on."""
-    return (
-        load(s, row, lane),
-        load(s, row + 3, lane),
-        load(s, row + 6, lane),
-        load(s, row + 9, lane),
-        load(s, row + 12, lane),
-        load(s, row + 15, lane),
-        load(s, row + 18, lane),
-    )
-
-
-@inlined
-def _store(s: Array, row: int, lane: int, f: Shape) -> None:
-    for mode in range(7):
-        store(s, row + 3 * mode, lane, f[mode])

@@ -1,7 +1,5 @@
 """Responses of a run: of its histories and of its fields, and `status`, the reason for each NaN."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

@@ -20,8 +20,6 @@ Source of the mean gradient: D. P. Flanagan and T. Belytschko, Int. J. Numer. Me
 679; written here in modes.
 """
 
-from __future__ import annotations
-
 from impactlab.fem3d.solver.compiler import Array, inlined
 
 W = 16  # lanes of a block
@@ -113,6 +111,27 @@ def combine(e: Tensor, q: Vector) -> Vector:
 
 Modes = tuple[float, float, float, float, float, float, float]
 Shape = tuple[Vector, Vector, Vector, Vector, Vector, Vector, Vector]
+
+
+@inlined
+def load_modes(s: Array, row: int, lane: int) -> Shape:
+    """Return the seven vectors in rows from `row` on."""
+    return (
+        load(s, row, lane),
+        load(s, row + 3, lane),
+        load(s, row + 6, lane),
+        load(s, row + 9, lane),
+        load(s, row + 12, lane),
+        load(s, row + 15, lane),
+        load(s, row + 18, lane),
+    )
+
+
+@inlined
+def store_modes(s: Array, row: int, lane: int, f: Shape) -> None:
+    """Store seven vectors in rows from `row` on."""
+    for mode in range(7):
+        store(s, row + 3 * mode, lane, f[mode])
 
 
 @inlined

@@ -14,8 +14,6 @@ Numer. Meth. Engng. 32 (1991) 103. Overlaps at integration points are those of K
 P. Wriggers, Comput. Mech. 36 (2005) 226 (recalled), without their penalty.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from impactlab.fem3d.solver.compiler import Array, compiled, inlined

@@ -7,8 +7,6 @@ sphere's surface, cut by the layers. Surface nodes near the pole have the x and 
 from there the lines flare out into an evenly cut core.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

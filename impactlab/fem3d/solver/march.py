@@ -1,7 +1,5 @@
 """The march through time: steps, checkpoints, reasons to stop, and the history it leaves."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field

@@ -11,8 +11,6 @@ Source: M. L. Wilkins (1964); J. C. Simo and T. J. R. Hughes, Computational Inel
 box 3.1.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.fem3d.solver.compiler import Array, compiled, inlined

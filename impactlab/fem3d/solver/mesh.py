@@ -3,9 +3,8 @@
 A quarter of both where the beam is held alike at both ends and struck in its middle; else a half.
 """
 
-from __future__ import annotations
-
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -259,21 +258,13 @@ def impact_mesh(
     sphere_nodes, sphere_elements, surface = quarter_sphere(
         impact.sphere.radius, size, half, depth, ratio, largest
     )
-    pole = 0
+    pole = len(surface) - 1 if parts == 2 else 0
     if parts == 2:
-        pole = len(surface) - 1
         sphere_nodes, sphere_elements, surface = mirrored(sphere_nodes, sphere_elements, surface)
     first, reach = len(beam_nodes), round(half / size)
     place = np.arange(first, dtype=np.int32).reshape(x.size, y.size, z.size)
-    above, below = (
-        rows[max(centre - reach, 0) : centre + reach + 1, : reach + 1]
-        for rows, centre in ((surface + np.int32(first), pole), (place[:, :, -1], struck))
-    )
-    pairs = np.stack([above, below], axis=-1).reshape(-1, 2)
-    faces = faces_of(*above.shape)
-    rim = np.zeros(above.shape, dtype=bool)
-    rim[-1], rim[:, -1] = True, True
-    rim[0] |= parts == 2
+    centred = (surface + np.int32(first), pole), (place[:, :, -1], struck)
+    pairs, faces, rim = _matched(centred, reach, parts)
     nodes = np.concatenate([beam_nodes, sphere_nodes])
     nodes[pairs[:, 0], :2] = nodes[pairs[:, 1], :2]  # the same to the last bit
     elements = np.concatenate([beam_elements, sphere_elements + np.int32(first)])
@@ -293,7 +284,7 @@ def impact_mesh(
         pairs=pairs,
         faces=faces,
         gaps=nodes[pairs[:, 0], 2] - nodes[pairs[:, 1], 2],
-        rim=rim.ravel(),
+        rim=rim,
         bulge=bulges(nodes[pairs[faces, 0]], impact.sphere.radius),
         normals=np.column_stack([-slopes, np.ones(len(slopes))]),
         symmetry_x=symmetry_x,
@@ -305,6 +296,23 @@ def impact_mesh(
         element_size=size,
         patch=half,
     )
+
+
+def _matched(
+    centred: Iterable[tuple[Integers, int]], reach: int, parts: int
+) -> tuple[Integers, Integers, NDArray[np.bool_]]:
+    """Return pairs of nodes, those of sphere and beam, their faces, and which are on the rim.
+
+    centred: nodes of sphere and beam, and the row of the middle. reach: of the patch, in elements.
+    """
+    above, below = (
+        rows[max(centre - reach, 0) : centre + reach + 1, : reach + 1] for rows, centre in centred
+    )
+    rim = np.zeros(above.shape, dtype=bool)
+    rim[-1], rim[:, -1] = True, True
+    rim[0] |= parts == 2
+    pairs = np.stack([above, below], axis=-1).reshape(-1, 2)
+    return pairs, faces_of(*above.shape), rim.ravel()
 
 
 def _layers(

@@ -15,8 +15,6 @@ where a bed is, with k/B per area; its springs are vertical. Stiff springs let a
 they are part of system.critical_step.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ never add to the same row, and the order of all sums is that of the mesh: a grou
 same pieces for any number of threads, so the number of threads changes no bit of the results.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise

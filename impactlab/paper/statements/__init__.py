@@ -3,8 +3,6 @@
 A new statement is a function marked `@statement` in the module of its subject.
 """
 
-from __future__ import annotations
-
 from impactlab.paper.statements import (
     misprints,
     omissions,

@@ -8,8 +8,6 @@ EI (N m2); mu (kg/m); omega (1/s), the highest frequency of the grid; lambda, th
 its mode grows each step.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Statements on what the paper's model leaves out: shear, strain rate, and the cost of a solid."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Statements on the plastic strain (PEEQ) along the beam: when it begins, where, and how large."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

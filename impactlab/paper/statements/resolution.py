@@ -1,7 +1,5 @@
 """Statements on how fine the beam is cut: nodes, integration points, and Zhang's layers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import partial
 from typing import Any

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from impactlab.analysis.convergence.extrapolation import SAFETY_DOUBTFUL
 from impactlab.analysis.convergence.judgement import judge
-from impactlab.analysis.convergence.richardson import SAFETY_DOUBTFUL
 from impactlab.variables import RESPONSES, reasons, status_bits
 
 Data = Mapping[str, xr.Dataset]  # the runs of each study by its name

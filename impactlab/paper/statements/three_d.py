@@ -1,7 +1,5 @@
 """Statements that compare the beam model with a 3-D finite-element model."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 import numpy as np

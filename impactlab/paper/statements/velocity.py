@@ -1,7 +1,5 @@
 """Statements on the first contact against the impact velocity: durations and indentations."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import replace

@@ -5,8 +5,6 @@ too (see hertz.py), and an entry at the end of the registry. This file stays fre
 laws can be listed without compiling any.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -9,8 +9,6 @@ Between first yield and full plasticity lies nothing, so the onset is far too la
 pressure of Hertz's contact has reached 2 H there, because its circle is half the truncated one.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.jit import compiled

@@ -17,8 +17,6 @@ second order in a/z.
 Neglected: the beam's lower face, and what the plastic strains do to the bending of the beam.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.contact.history import Pair, yield_stress

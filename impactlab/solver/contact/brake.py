@@ -7,8 +7,6 @@ the loading of mjg.py (see the registry). With F_H the force of Hertz at delta_m
 The softer the contact beside Hertz's, the deeper the dent.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.contact.jackson_green import ONSET, critical_indentation, indentation_at

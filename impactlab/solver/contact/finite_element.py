@@ -16,8 +16,6 @@ The coefficients and q follow from the metals (metals.py). tests/benchmarks/cont
 and prints how well.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.contact.metals import (

@@ -13,8 +13,6 @@ A viscous law has a fourth function, `damping` (see hunt_crossley.py): the force
 the force on its curve, where the approach is delta (m) and grows at `rate` (m/s).
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.jit import compiled

@@ -14,8 +14,6 @@ snaps, at one approach, to where it is borne again, along the spring's line, whi
 law's force: loading takes the less work.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple

@@ -4,12 +4,10 @@ Source: Hunt and Crossley 1975 (J. Applied Mechanics 42, 440). With the approach
     F = k delta^n (1 + (3/2) alpha delta'), here with Hertz's k and n = 3/2.
 The first integral of m delta'' = -F gives the coefficient of restitution e at the velocity v,
     (1 - s) exp(s) = (1 + r) exp(-r), r = (3/2) alpha v, s = e r,
-which is e = 1 - alpha v for a small v (verification/solutions/hunt_crossley.py). The largest force
+which is e = 1 - alpha v for a small v (verification/solutions/hertz.py). The largest force
 comes before the largest indentation. A sphere that leaves faster than 2/(3 alpha) would be pulled
 back: contact_damping.py makes that force zero.
 """
-
-from __future__ import annotations
 
 from impactlab.solver.contact.hertz import curve as curve
 from impactlab.solver.contact.hertz import limit as limit

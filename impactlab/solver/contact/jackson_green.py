@@ -13,8 +13,6 @@ The fit of delta_r passes delta_m at y_m = 10012. It is held at 0.99 delta_m, an
 ends there (y_m = 4725), if it has not before.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.jit import compiled

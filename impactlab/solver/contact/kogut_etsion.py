@@ -12,8 +12,6 @@ H = 2.8 S_y, K = 0.454 + 0.41 nu, delta_c = (pi K H/(2 E))^2 R, y = delta/delta_
 The three forces do not meet: each limit is a jump upwards.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.jit import compiled

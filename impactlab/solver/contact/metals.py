@@ -14,8 +14,6 @@ Fitted by tests/benchmarks/contact_law.py, which says to what, and writes them h
 data the numbers are held at their ends.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from impactlab.solver.jit import compiled

@@ -8,8 +8,6 @@ The earlier form (Ghaednia, Marghitu and Jackson 2015: 0.17 for 1/4, 1/78 for 1/
 drops by 10.7 % at y = 1.9; it could not be confirmed and is not used.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.contact.jackson_green import (

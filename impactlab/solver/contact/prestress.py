@@ -26,8 +26,6 @@ depth, and have a part in the force itself, the half-space's stresses taken out
 (model/contact_compliance.py). Together they are at most at yield.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.contact.history import MISSED, Pair, bracketed, load, recovered, yield_stress

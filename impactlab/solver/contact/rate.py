@@ -14,8 +14,6 @@ the impact was tried against 3-D finite elements (tests/benchmarks/strain_rate.p
 at one rate per impact is right in either the largest force or the indentation, not in both.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.contact.history import Pair, load

@@ -12,8 +12,6 @@ than loading took for 1 < x < 2.673 (restitution up to 1.10; the dissipation is 
 and it ends below zero indentation for 1 < x < 1.998 (delta_r < 0).
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.jit import compiled

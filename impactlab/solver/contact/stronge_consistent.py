@@ -8,8 +8,6 @@ Up to x = 15.416 the unloading gives back x^(-1/4) of the loading work, and leav
 The cap is our own choice; a cap by the elastic force follows from yielding being a loss.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.contact.stronge import force_ratio, yield_indentation

@@ -9,8 +9,6 @@ The force jumps while nothing moves, which takes no work; what is dissipated is 
 less what the unloading curve gives back, as in every law.
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.contact.stronge import force_ratio, yield_indentation

@@ -4,8 +4,6 @@ Chains of compiled functions, not functions passed as arguments: that would comp
 process.
 """
 
-from __future__ import annotations
-
 from importlib import import_module
 from typing import Any
 

@@ -8,8 +8,6 @@ Sources: Thornton 1997 (J. Applied Mechanics 64, 383); Thornton and Ning 1998. p
                       R_p = (4 E/(3 F_m)) ((2 F_m + F_y)/(2 pi p_y))^1.5
 """
 
-from __future__ import annotations
-
 import math
 
 from impactlab.solver.jit import compiled

@@ -3,8 +3,6 @@
 The sample is nested: the runs of N base samples are the first ones of 2 N, so none is wasted.
 """
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable, Sequence
 from typing import Any

@@ -10,8 +10,6 @@ design of resolution IV: any three parameters meet in all eight combinations of 
 Hunter and Hunter (2005), Statistics for Experimenters, ch. 6), and the case in the middle.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial, reduce

@@ -1,7 +1,5 @@
 """Checks between the sections of a study of impacts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -14,19 +12,10 @@ from impactlab.methods.distributions import Choice, Distribution, Integers
 from impactlab.methods.grid import Grid
 from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
+from impactlab.model import impact
+from impactlab.model.bodies import sphere_rows
 from impactlab.model.case_table import MODAL_DAMPING, NO_INTERVAL, TOO_SOON, between_nodes
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
-from impactlab.model.further_spheres import sphere_rows
-from impactlab.model.impact import (
-    DAMPED_BEAM,
-    FOUNDED_BEAM,
-    HINGES,
-    MID_SPAN,
-    MODELS_ON_SPRINGS,
-    MOVING_MODELS,
-    OTHER_BEAM,
-    SPRUNG_BEAM,
-)
 from impactlab.model.parameters import PARAMETERS, SECTION, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.model.quantities import shown
@@ -225,20 +214,20 @@ def _other_beams(file: StudyFile, models: set[Value]) -> Reasons:
             if reason := between_nodes(place, nodes):
                 yield key, f"{place:g} {reason}"
                 return
-    if file.discretisation[1] is not None and set(places) != {MID_SPAN}:
+    if file.discretisation[1] is not None and set(places) != {impact.MID_SPAN}:
         yield "discretisation.auto", "needs strike_position: 0.5: state the discretisation"
     supports = {
         support
         for side in ("left", "right")
         for support in values_of(sampling, f"support_{side}", getattr(beam, f"support_{side}"))
     }
-    if supports <= set(HINGES) and set(places) == {MID_SPAN}:
+    if supports <= set(impact.HINGES) and set(places) == {impact.MID_SPAN}:
         return
-    if models - set(MOVING_MODELS):
-        reason = f"must be {' or '.join(MOVING_MODELS)} {OTHER_BEAM}"
+    if models - set(impact.MOVING_MODELS):
+        reason = f"must be {' or '.join(impact.MOVING_MODELS)} {impact.OTHER_BEAM}"
         yield key_of("beam_model", sampling), reason
-    elif "elastic" in supports and models - set(MODELS_ON_SPRINGS):
-        yield key_of("beam_model", sampling), f"must be {SPRUNG_BEAM}"
+    elif "elastic" in supports and models - set(impact.MODELS_ON_SPRINGS):
+        yield key_of("beam_model", sampling), f"must be {impact.SPRUNG_BEAM}"
 
 
 def _resisted_beams(file: StudyFile, ends: Extremes) -> Reasons:
@@ -246,9 +235,9 @@ def _resisted_beams(file: StudyFile, ends: Extremes) -> Reasons:
     sampling, grid = file.sampling, file.discretisation[0]
     models = set(values_of(sampling, "beam_model", file.impact.beam_model))
     if any(ends[name][1] > 0.0 for name in DAMPINGS) and models - set(WAVE_MODELS):
-        yield key_of("beam_model", sampling), f"must be {DAMPED_BEAM}"
-    if ends["foundation_stiffness"][1] > 0.0 and models - set(MODELS_ON_SPRINGS):
-        yield key_of("beam_model", sampling), f"must be {FOUNDED_BEAM}"
+        yield key_of("beam_model", sampling), f"must be {impact.DAMPED_BEAM}"
+    if ends["foundation_stiffness"][1] > 0.0 and models - set(impact.MODELS_ON_SPRINGS):
+        yield key_of("beam_model", sampling), f"must be {impact.FOUNDED_BEAM}"
     schemes = values_of(sampling, "scheme", grid.scheme)
     if ends["damping_ratio"][1] > 0.0 and "leapfrog" in schemes:
         yield key_of("damping_ratio", sampling), MODAL_DAMPING

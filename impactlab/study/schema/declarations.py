@@ -1,7 +1,5 @@
 """Studies and verifications as their files define them, and the sections of a study of impacts."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field

@@ -4,8 +4,6 @@ It is made from the sections that read the files. It accepts each file that they
 that they refuse: limits that hang on other values, and units, are theirs to check.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from pydantic import TypeAdapter

@@ -1,7 +1,5 @@
 """Readers of measurements: files measurements/NAME.yaml, or mappings with the same keys."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
@@ -22,19 +20,9 @@ from impactlab.methods.runs import listed
 from impactlab.model.parameters import PARAMETERS, Parameter
 from impactlab.model.quantities import si
 from impactlab.study.schema.yaml_file import read_mapping, read_text
+from impactlab.validation import fields
 from impactlab.validation.errors import unknown
-from impactlab.validation.fields import (
-    FileSection,
-    Heading,
-    Number,
-    Text,
-    at_key,
-    by_name,
-    requires,
-    validated,
-    value_type,
-)
-from impactlab.validation.stated import plain
+from impactlab.validation.fields import plain
 from impactlab.variables import RESPONSES, of_function
 
 Conditions = Mapping[str, Any]
@@ -57,21 +45,21 @@ def _number(value: Any, info: ValidationInfo) -> float | None:
 
 def _conditions(data: Any, info: ValidationInfo) -> Conditions:
     parameters: Mapping[str, Parameter] = info.context["parameters"]  # type: ignore[index]
-    types = {name: value_type(parameter) for name, parameter in parameters.items()}
-    return by_name("Conditions", types, data, info)
+    types = {name: fields.value_type(parameter) for name, parameter in parameters.items()}
+    return fields.by_name("Conditions", types, data, info)
 
 
-class _Entry(FileSection):
+class _Entry(fields.FileSection):
     """One measured value, with its uncertainty and the meaning of that."""
 
     quantity: Annotated[str, BeforeValidator(_quantity)]
     value: Annotated[Any, PlainValidator(_number)]
     standard_uncertainty: Annotated[Any, PlainValidator(_number)] = None
     expanded_uncertainty: Annotated[Any, PlainValidator(_number)] = None
-    coverage_factor: Annotated[Number, Field(ge=1, le=10)] | None = None
+    coverage_factor: Annotated[fields.Number, Field(ge=1, le=10)] | None = None
     systematic_uncertainty: Annotated[Any, PlainValidator(_number)] = 0.0
     conditions: Annotated[Conditions, PlainValidator(_conditions)] = Field(default_factory=dict)
-    note: Text = ""
+    note: fields.Text = ""
 
     @model_validator(mode="after")
     def _one_uncertainty(self) -> Self:
@@ -86,7 +74,7 @@ class _Entry(FileSection):
         if self.standard <= 0:
             raise ValueError("the uncertainty must be above zero")
         if not 0 <= self.systematic_uncertainty < self.standard:
-            raise at_key(
+            raise fields.at_key(
                 "systematic_uncertainty",
                 "is a part of the standard uncertainty, so it must be at least 0 and below it "
                 f"({self.standard:.6g} in SI units): lower it, or add it to the standard "
@@ -103,12 +91,12 @@ class _Entry(FileSection):
         )
 
 
-class _File(Heading):
-    source: Annotated[Text, Field(min_length=1)]
+class _File(fields.Heading):
+    source: Annotated[fields.Text, Field(min_length=1)]
     simulated: StrictBool = False
     conditions: Annotated[Conditions, PlainValidator(_conditions)] = Field(default_factory=dict)
     measurements: Annotated[
-        tuple[_Entry, ...], requires(bool, "is empty: list at least one measurement")
+        tuple[_Entry, ...], fields.requires(bool, "is empty: list at least one measurement")
     ]
 
 
@@ -140,7 +128,7 @@ def read_measurements(
     else:
         file = str(measurements)
         data = read_mapping(read_text(Path(measurements)), file)
-    read: Any = partial(validated, parameters=parameters, responses=responses)
+    read: Any = partial(fields.validated, parameters=parameters, responses=responses)
     content: _File = read(_File, data, file)
     source = f"{content.title} ({content.source})"
     measured = []

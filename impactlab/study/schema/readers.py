@@ -1,7 +1,5 @@
 """Readers of study files: of impacts, of a test function, and of checks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from difflib import get_close_matches
 from pathlib import Path

@@ -4,8 +4,6 @@ Aliases and merge keys let a short text stand for more than a machine can hold. 
 is counted on the parsed graph, in a time that grows with the text alone, before it is built.
 """
 
-from __future__ import annotations
-
 import io
 import os
 import re

@@ -1,7 +1,5 @@
 """Solvers of a study's runs: one file each, and one line in SOLVERS or in a wing's record."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pkgutil import resolve_name

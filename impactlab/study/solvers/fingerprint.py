@@ -5,8 +5,6 @@ scopes and the globals that it uses, and those of the functions that it calls. I
 count by name and version.
 """
 
-from __future__ import annotations
-
 import dis
 import sys
 import sysconfig

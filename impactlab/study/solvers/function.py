@@ -1,7 +1,5 @@
 """Test functions in place of the solver, with known indices, so that a study can be checked."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

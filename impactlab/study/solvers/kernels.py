@@ -1,7 +1,5 @@
 """Impacts, solved by the kernels."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from itertools import product
 from typing import Any

@@ -4,8 +4,6 @@ A study holds them by keys, NAME@FINGERPRINT, under which this process knows the
 what they need with each batch.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager

@@ -17,8 +17,6 @@ Timoshenko, Phil. Mag. 41 (1921) 744 and 43 (1922) 125; the second spectrum: R. 
 A. R. Collar, Q. J. Mech. Appl. Math. 6 (1953) 186.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -6,8 +6,6 @@ Functions of plain numbers, all in SI: indentation d (m), effective modulus E (P
 the softer body's yield stress S (Pa) and Poisson's ratio nu.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

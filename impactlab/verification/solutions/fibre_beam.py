@@ -10,8 +10,6 @@ Degrees of freedom: deflection (m) and slope of each node from the support to mi
 support's deflection and mid-span's slope; then the sphere. All are of half the impact.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

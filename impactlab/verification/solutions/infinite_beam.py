@@ -5,8 +5,6 @@ w(x, t) = J/(pi mu k) * integral of sin(k q^2 t) cos(q x)/q^2 over q > 0, k = sq
 mu = rho A. All of it holds for a beam of finite span until the supports' echo is back.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -18,8 +18,6 @@ Impact (1960), and Wang et al.; integrator: scipy's DOP853 (Hairer, Norsett and 
 Ordinary Differential Equations I (1993), section II.10).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

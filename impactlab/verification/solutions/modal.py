@@ -9,8 +9,6 @@ Symbols: y, v, displacement (m) and velocity (m/s) of a body: the sphere, or the
 one mode; h, step (s); k, Hertz stiffness (N m^-1.5); F, contact force (N); delta, indentation (m).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

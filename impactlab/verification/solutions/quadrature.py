@@ -3,8 +3,6 @@
 Source: Davis and Rabinowitz, Methods of Numerical Integration (1984), section 2.7.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.special import roots_jacobi, roots_legendre
 

@@ -12,8 +12,6 @@ Symbols: delta_y (m) and F_y (N), indentation and force at first yield; x = delt
 u = 2 x - 1.
 """
 
-from __future__ import annotations
-
 import math
 
 from scipy.optimize import brentq

@@ -14,7 +14,6 @@ from impactlab.analysis import ANALYSES, AnalysisEntry
 from impactlab.analysis.analyse import analyse
 from impactlab.analysis.surrogate import chaos
 from impactlab.files import write_netcdf
-from impactlab.methods import estimators as method
 from impactlab.methods import saltelli
 from impactlab.study.steps import analyse_runs
 
@@ -151,7 +150,7 @@ def test_every_variable_is_described(discretisation, sample):
 def test_a_sample_is_analysed_one_response_at_a_time(sample_runs, tmp_path, monkeypatch):
     """Memory holds fewer than 6 columns; the responses and parameters of the runs are 12."""
     monkeypatch.setattr(saltelli, "_ROWS", 1024)
-    monkeypatch.setattr(method, "_CELLS", 10_000)
+    monkeypatch.setattr("impactlab.methods.runs._CELLS", 10_000)
     monkeypatch.setattr(chaos, "MOST_RUNS", 100)
     names, parameters = [f"y{at}" for at in range(6)], ["x0", "x1", "x2", "x3", "x4", "x5"]
 

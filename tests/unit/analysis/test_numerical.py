@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.analysis.numerical import measured, numerical
+from impactlab.analysis.analyse import measured, numerical
 from impactlab.study.adaptive.extension import refine_cases
 from impactlab.study.design import design
 from impactlab.study.schema.readers import study_of_text

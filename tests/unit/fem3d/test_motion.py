@@ -5,10 +5,9 @@ import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.fem3d.figures.motion import animation
-from impactlab.fem3d.figures.run import faces
+from impactlab.fem3d.figures.run import animation, faces
 from impactlab.fem3d.solver import impact_mesh, solve_on
-from impactlab.fem3d.solver.frames import FRAMES
+from impactlab.fem3d.solver.dataset import FRAMES
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousands of elements")
 

@@ -6,8 +6,8 @@ import xarray as xr
 
 import impactlab as il
 from impactlab.methods import hsic
+from impactlab.methods.record import SensitivityVerdict
 from impactlab.methods.runs import Sample
-from impactlab.methods.verdict import SensitivityVerdict
 
 
 def sample_of(inputs, seed, **attributes):

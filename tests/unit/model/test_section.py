@@ -8,7 +8,7 @@ from shapes import beam_of
 
 import impactlab as il
 from impactlab.model.case_table import case_table
-from impactlab.model.integration import integration_rule
+from impactlab.model.discretisation import integration_rule
 from impactlab.model.section import SHAPES, fibre_table, section_of
 from impactlab.solver import RULES
 from impactlab.verification.solutions import quadrature

@@ -8,7 +8,7 @@ import xarray as xr
 from scipy.stats import spearmanr
 
 from impactlab.analysis import distribution
-from impactlab.analysis.numerical import NumericalFrom
+from impactlab.analysis.analyse import NumericalFrom
 from impactlab.figures.catalogue import applicable
 from impactlab.figures.draw import draw_all
 from impactlab.report import sensitivity

@@ -10,8 +10,7 @@ import impactlab as il
 from impactlab.figures import access
 from impactlab.figures.catalogue import applicable
 from impactlab.report.comparison import on_common_dimensions
-from impactlab.solver.growth import by_strike, first_without_growth
-from impactlab.solver.outputs import SERIES
+from impactlab.solver.outputs import SERIES, by_strike, first_without_growth
 from impactlab.solver.types import CASE
 from impactlab.study.design import design
 from impactlab.study.estimate import estimate

@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial import Polynomial
 from scipy.optimize import curve_fit
 
-from impactlab.analysis.convergence.least_squares import Expansion, fit, uncertainty
+from impactlab.analysis.convergence.extrapolation import Expansion, fit, uncertainty
 
 H = 2.0 ** np.arange(5)
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from impactlab.analysis.convergence.richardson import (
+from impactlab.analysis.convergence.extrapolation import (
     SAFETY_CREDIBLE,
     SAFETY_DOUBTFUL,
     Behaviour,

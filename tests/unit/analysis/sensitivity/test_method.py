@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from impactlab.methods import estimators as method
+from impactlab.methods import runs
 from impactlab.methods.runs import Sample
 
 
@@ -15,7 +15,7 @@ def _sample(resamples, confidence=0.95):
 
 def test_counts_are_multinomial():
     """Mean 1, variance 1 - 1/rows, and rows in all."""
-    tallies = np.concatenate(list(method.counts(50, 4000, np.random.default_rng(1))))
+    tallies = np.concatenate(list(runs.counts(50, 4000, np.random.default_rng(1))))
     assert tallies.shape == (4000, 50)
     np.testing.assert_array_equal(tallies.sum(axis=1), 50)
     np.testing.assert_allclose(tallies.mean(axis=0), 1.0, atol=0.07)
@@ -23,13 +23,13 @@ def test_counts_are_multinomial():
 
 
 def test_chunks_change_nothing(monkeypatch):
-    whole = np.concatenate(list(method.counts(7, 20, np.random.default_rng(1))))
-    monkeypatch.setattr(method, "_CELLS", 21)
-    parts = list(method.counts(7, 20, np.random.default_rng(1)))
+    whole = np.concatenate(list(runs.counts(7, 20, np.random.default_rng(1))))
+    monkeypatch.setattr(runs, "_CELLS", 21)
+    parts = list(runs.counts(7, 20, np.random.default_rng(1)))
     assert [len(part) for part in parts] == [3] * 6 + [2]
     np.testing.assert_array_equal(np.concatenate(parts), whole)
-    monkeypatch.setattr(method, "_CELLS", 5)
-    assert [len(part) for part in method.counts(7, 3, np.random.default_rng(1))] == [1, 1, 1]
+    monkeypatch.setattr(runs, "_CELLS", 5)
+    assert [len(part) for part in runs.counts(7, 3, np.random.default_rng(1))] == [1, 1, 1]
 
 
 @pytest.mark.parametrize(("confidence", "quantile"), [(0.95, 1.959964), (0.68, 0.994458)])
@@ -41,6 +41,6 @@ def test_half_width_of_a_mean(confidence, quantile):
         return {"mean": means[..., 0]}
 
     sample = _sample(4000, confidence)
-    found = method.half_widths(rows, mean, sample, "y")
+    found = runs.half_widths(rows, mean, sample, "y")
     expected = quantile * rows.std() / np.sqrt(400)
     np.testing.assert_allclose(found["mean_interval"], expected, rtol=0.04)

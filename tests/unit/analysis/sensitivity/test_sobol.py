@@ -9,9 +9,9 @@ from SALib.analyze import sobol as salib
 
 from impactlab.analysis import sensitivity
 from impactlab.figures import measures
+from impactlab.methods import record
 from impactlab.methods import saltelli as numerics
 from impactlab.methods import sobol as module
-from impactlab.methods import verdict
 from impactlab.methods.runs import Sample
 from impactlab.methods.saltelli import saltelli
 
@@ -144,7 +144,7 @@ def test_intervals_cover_where_dimensions_of_a_and_b_depend_on_each_other(
         runs = xr.Dataset(coords={"run": np.arange(len(outputs))}, attrs=attrs)
         found = module.INDICES.estimate(outputs, Sample.of(runs), "y")
         covered.append(abs(found["first_order"] - exact) <= found["first_order_interval"])
-        alarms += verdict.SensitivityVerdict.DEPENDENT_BASES in module.INDICES.judge(found)
+        alarms += record.SensitivityVerdict.DEPENDENT_BASES in module.INDICES.judge(found)
     assert np.mean(covered, axis=0).min() >= 0.85  # 0.95 but for 3 standard deviations
     assert alarms <= 1
 

@@ -7,7 +7,7 @@ from scipy.stats import norm
 
 from impactlab.analysis import sensitivity
 from impactlab.analysis.analyse import analyse
-from impactlab.methods import verdict
+from impactlab.methods import record
 from impactlab.methods.saltelli import saltelli
 
 NAMES = ["x0", "x1", "x2"]
@@ -52,15 +52,15 @@ def test_few_runs_carry_the_variance(drawn, verdicts_of, unit):
     outputs = np.exp(3.5 * norm.ppf(np.clip(unit[:, 0], 1e-4, 1 - 1e-4)) + unit[:, 1])
     runs = drawn("sobol", unit, outputs, base_samples=BASE, second_order=1)
     assert _remarks(sensitivity.analysis(runs)) >= {"few_runs_carry_it"}
-    assert not verdict.of_outputs(norm.ppf(unit[:, 0].clip(1e-4, 1 - 1e-4)), [unit[:, 0]], 0.0)
+    assert not record.of_outputs(norm.ppf(unit[:, 0].clip(1e-4, 1 - 1e-4)), [unit[:, 0]], 0.0)
 
 
 def test_a_part_that_all_but_stands_still_is_constant():
     """Its variance, by which indices are divided, is nothing beside that of the whole."""
     part, rest = np.array([0.0, 1e-5, 0.0, 1e-5]), np.array([-1.0, 1.0, -1.0, 1.0])
-    assert verdict.still(np.concatenate([part, rest]), [part])
-    assert not verdict.still(np.concatenate([part, rest]), [rest])
-    assert not verdict.still(np.concatenate([100 * part, rest]), [100 * part])
+    assert record.still(np.concatenate([part, rest]), [part])
+    assert not record.still(np.concatenate([part, rest]), [rest])
+    assert not record.still(np.concatenate([100 * part, rest]), [100 * part])
 
 
 def _found(first, total, margin):
@@ -84,7 +84,7 @@ def _found(first, total, margin):
     ],
 )
 def test_shares_that_contradict_themselves(first, total, margin, name):
-    said = verdict.of_orders(_found(first, total, margin))
+    said = record.of_orders(_found(first, total, margin))
     assert [entry.name for entry in said] == [name] * (name != "USABLE")
 
 

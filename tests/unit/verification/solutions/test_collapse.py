@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from impactlab.model.impact import paper_impact
-from impactlab.verification.solutions import bending, collapse
+from impactlab.verification.solutions import bending
 
 BEAM = paper_impact().beam
 HARDENING = replace(BEAM, material=replace(BEAM.material, kinematic_hardening_modulus=5e9))
@@ -20,7 +20,7 @@ W_YIELD = bending.static_deflection(BEAM, AT_YIELD)
 def test_deflection_is_the_closed_form_without_hardening(ratio):
     """w/w_y = (5 - (3 + p) sqrt(3 - 2 p))/p^2, p = P/P_y: Prager and Hodge."""
     expected = (5 - (3 + ratio) * np.sqrt(3 - 2 * ratio)) / ratio**2 if ratio > 1 else ratio
-    deflection = collapse.midspan_deflection(BEAM, ratio * AT_YIELD)
+    deflection = bending.midspan_deflection(BEAM, ratio * AT_YIELD)
     assert deflection == pytest.approx(expected * W_YIELD, rel=1e-9)
 
 
@@ -33,29 +33,29 @@ def test_deflection_is_the_integral_along_a_hardening_beam():
 
     edge = 2 * bending.yield_moment(BEAM) / load
     expected, _ = quad(lambda x: curvature(x) * x, 0, BEAM.span / 2, points=[edge])
-    found = collapse.midspan_deflection(HARDENING, load)
+    found = bending.midspan_deflection(HARDENING, load)
     assert found == pytest.approx(expected, rel=1e-8)
 
 
 @pytest.mark.parametrize("beam", [BEAM, HARDENING], ids=["perfect", "hardening"])
 @pytest.mark.parametrize("ratio", [0.1, 0.999, 1.001, 1.2, 1.499])
 def test_load_is_the_inverse(beam, ratio):
-    deflection = collapse.midspan_deflection(beam, ratio * AT_YIELD)
-    assert collapse.load_at(beam, deflection) == pytest.approx(ratio * AT_YIELD, rel=1e-9)
+    deflection = bending.midspan_deflection(beam, ratio * AT_YIELD)
+    assert bending.load_at(beam, deflection) == pytest.approx(ratio * AT_YIELD, rel=1e-9)
 
 
 def test_collapse_begins_at_20_9_of_the_deflection_at_yield():
     limit = bending.collapse_load(BEAM)
-    assert collapse.load_at(BEAM, 2.23 * W_YIELD) == pytest.approx(limit, rel=1e-9)
-    assert collapse.load_at(BEAM, 2.2 * W_YIELD) < limit * (1 - 1e-5)
-    assert collapse.load_at(HARDENING, 10 * W_YIELD) > 1.1 * limit
+    assert bending.load_at(BEAM, 2.23 * W_YIELD) == pytest.approx(limit, rel=1e-9)
+    assert bending.load_at(BEAM, 2.2 * W_YIELD) < limit * (1 - 1e-5)
+    assert bending.load_at(HARDENING, 10 * W_YIELD) > 1.1 * limit
     # missing work is the area above the curve
     limit = bending.collapse_load(BEAM)
-    area, _ = quad(lambda w: limit - collapse.load_at(BEAM, w), 1e-9, 20 / 9 * W_YIELD, limit=200)
-    assert collapse.missing_work(BEAM) == pytest.approx(area, rel=1e-5)
+    area, _ = quad(lambda w: limit - bending.load_at(BEAM, w), 1e-9, 20 / 9 * W_YIELD, limit=200)
+    assert bending.missing_work(BEAM) == pytest.approx(area, rel=1e-5)
     # what the beam cannot carry is refused
     with pytest.raises(ValueError, match="cannot carry a moment"):
-        collapse.midspan_deflection(BEAM, 1.001 * bending.collapse_load(BEAM))
+        bending.midspan_deflection(BEAM, 1.001 * bending.collapse_load(BEAM))
 
 
 BASE = paper_impact(2.0)
@@ -66,9 +66,9 @@ def test_mode_mass_is_that_of_the_triangle():
     """Integral of mu (x/(L/2))^2 over the beam, and the striker."""
     beam = IMPACT.beam
     half, _ = quad(lambda x: beam.mass_per_length * (2 * x / beam.span) ** 2, 0, beam.span / 2)
-    assert collapse.mode_mass(IMPACT) == pytest.approx(200 + 2 * half, rel=1e-12)
+    assert bending.mode_mass(IMPACT) == pytest.approx(200 + 2 * half, rel=1e-12)
     # mode leaves the least kinetic energy of the difference
-    beam, v = IMPACT.beam, collapse.mode_velocity(IMPACT)
+    beam, v = IMPACT.beam, bending.mode_velocity(IMPACT)
 
     def difference(velocity):
         triangle = beam.mass_per_length * beam.span / 3 * velocity**2
@@ -77,22 +77,22 @@ def test_mode_mass_is_that_of_the_triangle():
     assert difference(v) < min(difference(v * 1.001), difference(v * 0.999))
     # a constant force brakes it
     w, v, t = (
-        getattr(collapse, name)(IMPACT)
+        getattr(bending, name)(IMPACT)
         for name in ("mode_deflection", "mode_velocity", "mode_duration")
     )
     assert w == pytest.approx(0.5 * v * t, rel=1e-12)
     work = 4 * 345e6 * 0.06 * 0.0278**2 / 4 / 0.78 * w
-    assert collapse.mode_energy(IMPACT) == pytest.approx(work, rel=1e-12)
+    assert bending.mode_energy(IMPACT) == pytest.approx(work, rel=1e-12)
     # energy ratio by hand
     load = bending.collapse_load(IMPACT.beam)
     stored = load**2 * 0.78**3 / (96 * 210e9 * 0.06 * 0.0278**3 / 12)
-    assert collapse.energy_ratio(IMPACT) == pytest.approx(400 / stored, rel=1e-12)
+    assert bending.energy_ratio(IMPACT) == pytest.approx(400 / stored, rel=1e-12)
 
 
 def test_elastic_plastic_deflection_balances_energy():
     """The static curve's work up to the largest deflection is the mode's energy."""
     heavy = replace(IMPACT, velocity=4.0)
     beam, load = heavy.beam, bending.collapse_load(heavy.beam)
-    largest = collapse.elastic_plastic_deflection(heavy) + bending.static_deflection(beam, load)
-    work, _ = quad(lambda w: collapse.load_at(beam, w), 1e-9, largest, limit=200)
-    assert work == pytest.approx(collapse.mode_energy(heavy), rel=1e-5)
+    largest = bending.elastic_plastic_deflection(heavy) + bending.static_deflection(beam, load)
+    work, _ = quad(lambda w: bending.load_at(beam, w), 1e-9, largest, limit=200)
+    assert work == pytest.approx(bending.mode_energy(heavy), rel=1e-5)

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from impactlab.verification.solutions import hertz
-from impactlab.verification.solutions.hunt_crossley import HuntCrossleyImpact
+from impactlab.verification.solutions.hertz import HuntCrossleyImpact
 
 MASS, K = 1.4, 2.9e10
 
