@@ -110,6 +110,8 @@ CONTENTS = {
     "refinement": "impactlab refine",
     "findings": "impactlab verify",
     "calibration": "impactlab calibrate",
+    "rare_event": "impactlab rare",
+    "sizing": "impactlab size",
     "comparison": "impactlab compare",
     "impact": "impactlab simulate",
     "figure": "impactlab figures",

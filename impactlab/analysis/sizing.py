@@ -56,9 +56,9 @@ class Sizing:
 
     designs: in the unit cube, (3, variable): the one chosen, of which the whole interval of the
     probability is small enough, and the ends between which the best one lies, NaN where there is
-    none. objectives: theirs, (3,). probability: of the chosen one, by runs there. estimates, tried:
-    of all designs that were tried, and their objectives. front: probabilities, objectives, and
-    their lower and upper ends, (4, point). runs: number of all.
+    none. objectives: theirs, (3,). probability: of the chosen one, by runs there. estimates,
+    tried, tried_objectives: of all designs that were tried, (estimate, variable). front:
+    probabilities, objectives, and their lower and upper ends, (4, point). runs: number of all.
     """
 
     verdict: SizingVerdict
@@ -67,6 +67,7 @@ class Sizing:
     probability: Estimate
     estimates: list[Estimate]
     tried: Floats
+    tried_objectives: Floats
     front: Floats
     runs: int
 
@@ -184,7 +185,7 @@ def size(
     front = _front(objective, model, probability, quantile, variables)
     return Sizing(
         verdict, np.array(designs), np.array(objectives), estimates[chosen], estimates,
-        objective(np.array(model.designs)), front, solved,
+        np.array(model.designs), objective(np.array(model.designs)), front, solved,
     )  # fmt: skip
 
 

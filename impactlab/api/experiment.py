@@ -202,7 +202,8 @@ def rare_event(
     xarray.Dataset
         Numbers `probability`, `low`, `high`, `coefficient_of_variation`, `verdict` and others;
         `design_point` on `parameter` in standard normal scores; the attribute `answer` holds the
-        findings in sentences.
+        findings in sentences. They are kept in the study's folder as rare_event.nc, with the report
+        rare_event.html.
 
     Raises
     ------
@@ -226,11 +227,14 @@ def rare_event(
     >>> bool(rare.low < 1.1e-5 < rare.high)
     True
     """
+    from impactlab.report.rare_event import report_rare_event
     from impactlab.study.rare_event import rare_event as probability
 
     engine = local_engine(workers)
     settings = samples, runs, coefficient_of_variation
-    return probability(study.declared, study.folder, engine, *settings)
+    result = probability(study.declared, study.folder, engine, *settings)
+    report_rare_event(result, study.folder)
+    return result
 
 
 def size(
@@ -280,7 +284,7 @@ def size(
     xarray.Dataset
         The design variables, the `objective` and its interval on `bound`, the `probability` there,
         the front, all designs tried, `verdict`; the attribute `answer` holds the findings in
-        sentences. The figure is results/NAME/sizing.svg and .png.
+        sentences. They are kept in the study's folder as sizing.nc, with the report sizing.html.
 
     Raises
     ------
@@ -305,7 +309,7 @@ def size(
     >>> bool(exact <= design.area[0] < 1.03 * exact)
     True
     """
-    from impactlab.report.sizing import draw_sizing
+    from impactlab.report.rare_event import report_sizing
     from impactlab.study.sizing import sizing
 
     result = sizing(
@@ -320,5 +324,5 @@ def size(
         runs=runs,
         target=coefficient_of_variation,
     )
-    draw_sizing(result, study.folder)
+    report_sizing(result, study.folder)
     return result

@@ -276,10 +276,11 @@ def rare(
     """Estimate the probability of a rare event.
 
     Draws samples that move towards the limit, solves them, and prints the probability and the
-    likeliest way beyond the limit. Runs are kept in results/NAME/rare_event, and are not solved
-    again.
+    likeliest way beyond the limit. Writes rare_event.nc and its report, rare_event.html, to
+    results/NAME. Runs are kept there in rare_event, and are not solved again.
     """
     stop_solving()
+    from impactlab.report.rare_event import report_rare_event
     from impactlab.study import steps
     from impactlab.study.engine import Engine
     from impactlab.study.rare_event import rare_event
@@ -287,7 +288,8 @@ def rare(
 
     declared = read_study(study)
     folder, engine = steps.results_folder(declared.name), Engine("threads", workers)
-    print(rare_event(declared, folder, engine, samples, runs, variation).attrs["answer"])
+    result = rare_event(declared, folder, engine, samples, runs, variation)
+    print(result.attrs["answer"], report_rare_event(result, folder), sep="\n")
 
 
 def size(
@@ -313,11 +315,11 @@ def size(
 
     Design variables have the distribution uniform in the study, which states their ranges; the
     other parameters scatter. Prints the values for which the response exceeds its limit with at
-    most the probability wanted, confirmed by runs, and draws the front (results/NAME/sizing.png).
-    Runs are kept in results/NAME/sizing, and are not solved again.
+    most the probability wanted, confirmed by runs. Writes sizing.nc and its report, sizing.html, to
+    results/NAME. Runs are kept there in sizing, and are not solved again.
     """
     stop_solving()
-    from impactlab.report.sizing import draw_sizing
+    from impactlab.report.rare_event import report_sizing
     from impactlab.study import steps
     from impactlab.study.engine import Engine
     from impactlab.study.schema.readers import read_study
@@ -337,9 +339,7 @@ def size(
         runs=runs,
         target=variation,
     )
-    print(result.attrs["answer"])
-    for path in draw_sizing(result, folder):
-        print(path)
+    print(result.attrs["answer"], report_sizing(result, folder), sep="\n")
 
 
 def animate(

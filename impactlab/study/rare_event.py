@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 import scipy  # its stats are loaded when first used
@@ -10,6 +10,7 @@ import xarray as xr
 
 from impactlab.analysis.rare_event import Estimate, RareEventVerdict
 from impactlab.analysis.rare_event import estimate as estimated
+from impactlab.files import write_netcdf
 from impactlab.methods.distributions import Choice
 from impactlab.methods.hypercube import Hypercube
 from impactlab.methods.runs import usable
@@ -21,7 +22,7 @@ from impactlab.study import RARE_EVENT, steps
 from impactlab.study.design import design
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.ownership import check_unclaimed
+from impactlab.study.ownership import check_unclaimed, study_file
 from impactlab.study.schema.declarations import AnyStudy
 from impactlab.types import Floats
 from impactlab.validation.errors import Problem, StudyError
@@ -99,8 +100,10 @@ class LimitRuns:
         attrs = self.first[parameter].attrs
         return str(attrs.get("long_name", parameter.replace("_", " ")))
 
-    def stated(self, parameter: str, value: float) -> str:
-        """Return a value of a parameter with its unit."""
+    def stated(self, parameter: str, value: Any) -> str:
+        """Return a value of a parameter with its unit, or a word."""
+        if isinstance(self.sampling.varied[parameter], Choice):
+            return str(value)
         return engineering(float(value), str(self.first[parameter].attrs.get("units", "1")))
 
     @property
@@ -140,12 +143,16 @@ def rare_event(
         target=target,
         confidence=study.analysis.confidence,
     )
-    return _dataset(result, solver).assign_attrs(
+    dataset = _dataset(result, solver).assign_attrs(
         study.attributes() | provenance(),
+        study_file=study_file(study, folder),
         confidence=study.analysis.confidence,
         target=target,
+        words=solver.sampling.words,
         answer=_answer(result, solver),
     )
+    write_netcdf(dataset, folder / f"{RARE_EVENT}.nc", "rare_event")
+    return dataset
 
 
 def _dataset(result: Estimate, solver: LimitRuns) -> xr.Dataset:
@@ -183,15 +190,24 @@ def _dataset(result: Estimate, solver: LimitRuns) -> xr.Dataset:
         for name, (value, unit, meaning) in numbers.items()
     }
     scores = {"units": "1", "long_name": "design point, in standard normal scores"}
+    values = {"long_name": "values of the design point"}
+    places = solver.values(point[np.newaxis])
+    texts = [
+        "" if np.isnan(point).any() else solver.stated(name, places[name][0]) for name in places
+    ]
     levels = {"units": units, "long_name": "limit of each level"}
     code = xr.DataArray(int(result.verdict))
     return xr.Dataset(
         variables
         | {
             "design_point": ("parameter", point, scores),
+            "design_value": ("parameter", texts, values),
             "level": ("levels", np.array(result.levels), levels),
         },
-        {"parameter": list(sampling.varied)},
+        {
+            "parameter": list(sampling.varied),
+            "parameter_long_name": ("parameter", [solver.long_name(name) for name in places]),
+        },
     ).assign(verdict=flagged(code, RareEventVerdict, "verdict on the probability"))
 
 
@@ -207,7 +223,7 @@ def _answer(result: Estimate, solver: LimitRuns) -> str:
         f"variation {result.coefficient_of_variation:.2g}; {result.runs:,} runs)."
     )
     if result.verdict is not RareEventVerdict.USABLE:
-        text += f" Caution: {result.verdict.meaning}."
+        text += f"\nCaution: {result.verdict.meaning}."
     places = []
     point = dict(zip(varied, result.design_point.tolist(), strict=True))
     values = solver.values(result.design_point[np.newaxis])
@@ -217,4 +233,4 @@ def _answer(result: Estimate, solver: LimitRuns) -> str:
         elif abs(score) >= _MATTERS:
             value = solver.stated(name, values[name][0])
             places.append(f"{solver.long_name(name)} {score:+.1f} sd ({value})".replace("-", "−"))
-    return f"{text} The likeliest way to exceed it: {', '.join(places)}."
+    return f"{text}\nThe likeliest way to exceed it: {', '.join(places)}."

@@ -9,6 +9,7 @@ import scipy  # its special is loaded when first used
 import xarray as xr
 
 from impactlab.analysis.sizing import MOST_VARIABLES, Index, Sizing, SizingVerdict, size
+from impactlab.files import write_netcdf
 from impactlab.methods.distributions import LogUniform, Uniform
 from impactlab.model.checks import column
 from impactlab.model.parameters import with_values
@@ -16,6 +17,7 @@ from impactlab.model.quantities import engineering
 from impactlab.provenance import provenance
 from impactlab.study import SIZING
 from impactlab.study.engine import Engine
+from impactlab.study.ownership import study_file
 from impactlab.study.rare_event import LimitRuns, check_estimate
 from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
 from impactlab.types import Floats
@@ -77,14 +79,19 @@ def sizing(
         confidence=study.analysis.confidence,
     )
     sign = -1.0 if maximise else 1.0
-    return _dataset(result, solver, variables, sign, name).assign_attrs(
+    options = f" --maximise {maximise}" if maximise else f" --minimise {minimise}"
+    dataset = _dataset(result, solver, variables, sign, name).assign_attrs(
         study.attributes() | provenance(),
+        study_file=study_file(study, folder),
+        arguments=f" {' '.join(variables)} --probability {probability:g}{options}",
         confidence=study.analysis.confidence,
         target=target,
         wanted=probability,
         objective=name,
         answer=_answer(result, solver, variables, sign, name, probability),
     )
+    write_netcdf(dataset, folder / f"{SIZING}.nc", "sizing")
+    return dataset
 
 
 def _check_variables(solver: LimitRuns, variables: Sequence[str]) -> None:
@@ -159,10 +166,13 @@ def _dataset(
         )
         for index, variable in enumerate(variables)
     }
+    for index, variable in enumerate(variables):
+        values = solver.sampling.varied[variable].quantile(result.tried[:, index])
+        data[f"tried_{variable}"] = (("estimate",), values, solver.first[variable].attrs)
     numbers = [result.probability.probability, result.probability.low, result.probability.high]
     data["probability"] = (("bound",), numbers, probability)
     data["objective"] = (("bound",), sign * result.objectives, best)
-    data["tried_objective"] = (("estimate",), sign * result.tried, best)
+    data["tried_objective"] = (("estimate",), sign * result.tried_objectives, best)
     for key in ("probability", "low", "high"):
         tried = [getattr(estimate, key) for estimate in estimates]
         long_name = {"low": "lower end of its interval", "high": "upper end of its interval"}
@@ -209,21 +219,24 @@ def _answer(
     )
     if result.verdict in (SizingVerdict.IMPOSSIBLE, SizingVerdict.NOT_CONVERGED):
         return (
-            f"No design: {result.verdict.meaning}. The last one tried, {places}, has probability "
-            f"{known} that {event}; at most {wanted:g} is wanted ({result.runs:,} runs)."
+            f"No design: {result.verdict.meaning}.\n"
+            f"The last one tried: {places}; {event} with probability {known}, and at most "
+            f"{wanted:g} is wanted ({result.runs:,} runs)."
         )
     kind = "least" if sign > 0 else "greatest"
+    lines = [
+        f"The design of {kind} {label} for which {event} with probability at most {wanted:g} has "
+        f"{places}.",
+        f"Probability there: {known}, by {estimate.runs:,} of {result.runs:,} runs.",
+    ]
     ends = sign * result.objectives[1:]
-    low, high = sorted(engineering(float(end), units) for end in ends)
-    text = (
-        f"The design of {kind} {label} for which {event} with probability at most {wanted:g}: "
-        f"{places}. Runs there give {known}."
-    )
     if np.isfinite(ends).all():
-        text += f" The {label} wanted lies from {low} to {high}."
+        low, high = (engineering(float(end), units) for end in np.sort(ends))
+        chosen = engineering(float(sign * result.objectives[0]), units)
+        lines.append(f"{label.capitalize()}: {chosen}; the {kind} possible is {low} to {high}.")
     if result.verdict is not SizingVerdict.USABLE:
         meaning = result.verdict.meaning
         if not estimate.verdict.sound:
             meaning += f" ({estimate.verdict.meaning})"
-        text += f" Caution: {meaning}."
-    return f"{text} {result.runs:,} runs."
+        lines.append(f"Caution: {meaning}.")
+    return "\n".join(lines)

@@ -30,6 +30,9 @@ def test_runs_are_kept_and_give_the_same_bits_for_any_number_of_workers(tmp_path
     assert "likeliest way to exceed it: " in first.answer
     assert "strength −" in first.answer
     assert "load +" in first.answer
+    page = (tmp_path / "one" / "load" / "rare_event.html").read_text("utf-8")
+    assert first.answer.splitlines()[0].removesuffix(".") in page.replace("\xa0", " ")
+    assert page.count("<figure") == 1
 
 
 def test_words_are_drawn_with_their_weights(tmp_path):

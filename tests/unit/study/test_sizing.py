@@ -43,8 +43,12 @@ def test_the_least_area_is_found_with_the_same_bits_for_any_number_of_workers(tm
     chosen, low, high = first.area.values
     assert low <= exact_area(1e-3) <= high
     assert exact_area(1e-3) <= chosen < 1.03 * exact_area(1e-3)
-    assert first.answer.startswith("The design of least area for which the value exceeds 0")
-    assert (tmp_path / "one" / "rod" / "sizing.png").exists()
+    headline, probability, least = first.answer.splitlines()
+    assert headline.startswith("The design of least area for which the value exceeds 0")
+    page = (tmp_path / "one" / "rod" / "sizing.html").read_text("utf-8")
+    for line in (headline, probability.partition(": ")[2], least.partition(": ")[2]):
+        assert line.removesuffix(".") in page.replace("\xa0", " ")
+    assert page.count("<figure") == 1
 
 
 def test_the_greatest_load_is_the_one_with_the_probability(tmp_path):

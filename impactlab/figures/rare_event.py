@@ -1,6 +1,4 @@
-"""The figure of a design: the best objective over the probability, with the designs confirmed."""
-
-from __future__ import annotations
+"""Figures of rare events: the likeliest way there, and designs over the probability."""
 
 from typing import Any
 
@@ -12,19 +10,35 @@ from impactlab.figures import labels, style
 
 
 @style.paper
-def sizing(result: xr.Dataset) -> Figure:
+def likeliest_way(result: xr.Dataset) -> Figure:
+    """Draw how far each number is from its median in the likeliest run beyond the limit."""
+    result = result.sel(parameter=~result["parameter"].isin(result.attrs["words"]))
+    order = np.argsort(np.abs(result["design_point"].values), kind="stable")
+    names = result["parameter_long_name"].values[order]
+    figure, (ax,) = style.panels(1, columns=1, height=22 + 7 * order.size)
+    rows, scores = np.arange(order.size), result["design_point"].values[order]
+    ax.barh(rows, scores, color=style.COLOURS[0], height=0.6)
+    ax.axvline(0.0, color="0.4", linewidth=0.8)
+    texts = zip(names, result["design_value"].values[order], strict=True)
+    ax.set_yticks(rows, [f"{labels.sentence(str(name))}\n{value}" for name, value in texts])
+    ax.set_xlabel("standard deviations from the median (–)")
+    return style.finish(figure)
+
+
+@style.paper
+def front(result: xr.Dataset) -> Figure:
     """Draw the front with its interval, and each design tried with that of its probability."""
     figure, (ax,) = style.panels(1, columns=1, height=62)
     unit = labels.display(result["tried_objective"])
     tried = result.isel(estimate=np.isfinite(result["tried_probability"].values))
     middle = tried["tried_probability"].values
     ends = [middle - tried["tried_low"].values, tried["tried_high"].values - middle]
-    front = unit(result["front_objective"].transpose("bound", "front").values)
-    if front.size:
+    objectives = unit(result["front_objective"].transpose("bound", "front").values)
+    if objectives.size:
         x = result["front"].values
         best: Any = {"color": style.COLOURS[0], "linewidth": 0}
-        ax.fill_between(x, front[1], front[2], alpha=0.25, label="its interval", **best)
-        ax.plot(x, front[0], color=style.COLOURS[0], label="best for a probability")
+        ax.fill_between(x, objectives[1], objectives[2], alpha=0.25, label="its interval", **best)
+        ax.plot(x, objectives[0], color=style.COLOURS[0], label="best for a probability")
     ax.errorbar(
         middle, unit(tried["tried_objective"].values), xerr=ends, fmt="o", markersize=3.5,
         color="0.25", capsize=2, label="confirmed by runs",

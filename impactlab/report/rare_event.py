@@ -1,0 +1,125 @@
+"""Reports of a rare event, and of a design with a small probability: the answer first."""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from impactlab.figures import labels, record
+from impactlab.figures.draw import draw
+from impactlab.figures.rare_event import front, likeliest_way
+from impactlab.report.page import Cell, Row, Section, Table, write_listed
+from impactlab.study import RARE_EVENT, SIZING
+
+_WAY = record.Figure(
+    "likeliest_way",
+    "The likeliest way beyond the limit",
+    lambda *_: True,
+    lambda result, _: likeliest_way(result),
+    lambda *_: (
+        "Each parameter of the likeliest run beyond the limit, with its value, in standard "
+        "deviations from its median."
+    ),
+)
+_FRONT = record.Figure(
+    "front",
+    "Designs over the probability",
+    lambda *_: True,
+    lambda result, _: front(result),
+    lambda *_: (
+        "Line: the best objective for a probability, with its interval; dots: designs whose "
+        "probability was confirmed by runs; diamond: the design chosen."
+    ),
+)
+
+
+def report_rare_event(result: xr.Dataset, folder: Path) -> Path:
+    """Write the report of a rare event into a study's folder; return its path."""
+    figures = folder / RARE_EVENT / "figures"
+    drawn = [(_WAY, (result, result))] if result["design_point"].notnull().all() else []
+    draw(drawn, figures, str(result.attrs.get("study")))
+    names = ("probability", "low", "high", "if_none", "if_all", "check", "first_order",
+             "coefficient_of_variation", "runs", "last_sample", "missing")  # fmt: skip
+    numbers: list[Row] = [
+        [labels.sentence(str(result[name].attrs["long_name"])), _cell(result[name].item())]
+        for name in names
+    ]
+    unit = labels.display(result["level"])
+    levels: list[Row] = [
+        [str(number), _cell(value)]
+        for number, value in enumerate(unit(result["level"].values).tolist(), 1)
+    ]
+    sections = [
+        Section(
+            "numbers",
+            "The estimate",
+            tables=[
+                Table("All numbers", ["Number", "Value"], numbers),
+                Table("Limits of the levels", ["Level", f"Limit ({unit.symbol or '–'})"], levels),
+            ],
+        )
+    ]
+    return _written(result, folder, figures, RARE_EVENT, "Rare event", "rare", sections)
+
+
+def report_sizing(result: xr.Dataset, folder: Path) -> Path:
+    """Write the report of a design into a study's folder; return its path."""
+    figures = folder / SIZING / "figures"
+    draw([(_FRONT, (result, result))], figures, str(result.attrs.get("study")))
+    last = ("tried_objective", "tried_probability", "tried_low", "tried_high")
+    columns = [*(name for name in result if str(name).startswith("tried_") and name not in last)]
+    columns += last
+    units = [labels.display(result[name]) for name in columns]
+    rows: list[Row] = [
+        [
+            str(row + 1),
+            *(
+                _cell(float(unit(result[name].values[row])))
+                for name, unit in zip(columns, units, strict=True)
+            ),
+        ]
+        for row in range(result.sizes["estimate"])
+    ]
+    heads = [
+        labels.axis(str(result[name].attrs["long_name"]), unit.symbol)
+        for name, unit in zip(columns, units, strict=True)
+    ]
+    tables = [Table("All designs tried, in order", ["Design", *heads], rows)]
+    sections = [Section("designs", "Designs", tables=tables)]
+    return _written(result, folder, figures, SIZING, "Design", "size", sections)
+
+
+def _cell(value: float) -> Cell:
+    return Cell("–" if np.isnan(value) else labels.number(value), "number")
+
+
+def _written(
+    result: xr.Dataset,
+    folder: Path,
+    figures: Path,
+    name: str,
+    kind: str,
+    command: str,
+    sections: list[Section],
+) -> Path:
+    """Write the page of a result, whose answer's first sentence is the headline."""
+    attrs = result.attrs
+    headline, *rest = (line.removesuffix(".") for line in str(attrs["answer"]).splitlines())
+    verdict = result["verdict"]
+    word = str(verdict.attrs["flag_meanings"]).split()[int(verdict)]
+    is_sound = word in str(verdict.attrs["sound_flags"]).split()
+    study = attrs["study_file"].replace("../", "") or "STUDY"
+    path = folder / f"{name}.html"
+    write_listed(
+        path,
+        result.assign_attrs(title=f"{kind}: {attrs.get('title', '')}", content=name),
+        figures,
+        headline=headline,
+        answers=[(subject, text) for subject, _, text in (line.partition(": ") for line in rest)],
+        sections=sections,
+        size=labels.counted(int(result["runs"]), "run"),
+        failed="" if is_sound else word.replace("_", " "),
+        reproduce=[(f"impactlab {command} {study}{attrs.get('arguments', '')}", "repeats it")],
+        index=path.parent.with_name("index.html"),
+    )
+    return path
