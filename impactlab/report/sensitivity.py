@@ -281,9 +281,11 @@ def index_tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list
             written = partial(in_units, runs[name]) if family is MORRIS else with_margin
             row = [named(analysis, name, judged)]
             columns = index.values, index.margins, index.significant, index.numerically_lost
-            for value, margin, significant, lost in zip(*columns, strict=True):
-                kind, detail = "number" if significant else "muted", "below numerical error"
-                row.append(Cell(written(value, margin), kind, detail if lost else ""))
+            details = _p_values(analysis.sel(response=name), measure)
+            for value, margin, significant, lost, detail in zip(*columns, details, strict=True):
+                kind = "number" if significant else "muted"
+                detail = "below numerical error" if lost else detail
+                row.append(Cell(written(value, margin), kind, detail))
             if dummy in analysis:
                 row.append(replace(_index(analysis.sel(response=name), dummy), kind="muted"))
             rows.append(row)
@@ -292,6 +294,16 @@ def index_tables(runs: xr.Dataset, analysis: xr.Dataset, family: Family) -> list
             head.append("Dummy parameter")
         tables.append(Table(_caption(f"{family.title}, {measure.label}", analysis), head, rows))
     return tables
+
+
+def _p_values(indices: xr.Dataset, measure: Measure) -> list[str]:
+    """Return the p-value of independence of each parameter, "" for indices that have none."""
+    values = indices.get(f"{measure.name}_p_value")
+    if values is None:
+        return [""] * indices.sizes["parameter"]
+    return [
+        f"p = {labels.number(value, 2)}" if np.isfinite(value) else "" for value in values.values
+    ]
 
 
 def second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Table:

@@ -29,6 +29,21 @@ def test_the_mean_is_unbiased_covered_and_as_accurate_as_theory_says(correlation
     assert ratio == pytest.approx(1 - correlation**2 * (1 - RUNS / LOW_RUNS), rel=0.3)
 
 
+def test_the_variance_is_unbiased_covered_and_as_accurate_as_it_says():
+    pairs = [ishigami_pair(seed, 0.97) for seed in range(REPETITIONS)]
+    variances = [il.Multifidelity(**pair).variance() for pair in pairs]
+    values = np.array([variance.value for variance in variances])
+    assert abs(values.mean() - VARIANCE) < 3 * values.std() / np.sqrt(REPETITIONS)
+    covered = np.mean([one.interval[0] < VARIANCE < one.interval[1] for one in variances])
+    assert 0.90 < covered < 0.995
+    plain = np.var([pair["high"].var(ddof=1) for pair in pairs])
+    saving = np.median([variance.saving for variance in variances])
+    assert plain / values.var() == pytest.approx(saving, rel=0.4)
+    useless = il.Multifidelity(**ishigami_pair(1, 0.5))
+    with pytest.raises(ValueError, match=r"below 0\.85 in size the runs of high alone do as well"):
+        useless.variance()
+
+
 def test_the_probability_comes_from_the_pairs_where_the_fast_model_is_useless():
     rng = np.random.default_rng(3)
     high = rng.normal(size=400)

@@ -133,3 +133,15 @@ def test_sections_without_an_analysis_are_left_out(report, velocity_study):
     ids = [attrs.get("id") for attrs in page.named("section")]
     assert "convergence" not in ids
     assert "sensitivity" not in ids
+
+
+def test_p_values_stand_below_the_indices_that_have_them(report, sobol_study):
+    runs, analysis = sobol_study
+    for end in ("", "_interval"):
+        analysis[f"hsic{end}"] = analysis[f"first_order{end}"]
+    analysis["hsic_p_value"] = analysis["first_order"] * 0 + 0.0123
+    page = report(runs, analysis)
+    (table,) = (rows for name, rows in page.tables.items() if name.startswith("HSIC"))
+    assert all(cell.endswith("p = 0.012") for cell in table[1][1:])
+    sobol = next(rows for name, rows in page.tables.items() if name.startswith("Sobol"))
+    assert not any("p = " in cell for row in sobol for cell in row)
