@@ -86,13 +86,10 @@ class _Model:
 
     def __call__(self, designs: Floats) -> Floats:
         """Return the index at designs (design, variable)."""
-        return self._mean_and_deviation(designs)[0]
+        return self.mean_and_deviation(designs)[0]
 
-    def deviation(self, design: Floats) -> float:
-        """Return the standard deviation of what is not known of the index at (variable,)."""
-        return float(self._mean_and_deviation(design[np.newaxis])[1][0])
-
-    def _mean_and_deviation(self, designs: Floats) -> tuple[Floats, Floats]:
+    def mean_and_deviation(self, designs: Floats) -> tuple[Floats, Floats]:
+        """Return the index, and the standard deviation of what is not known of it."""
         guesses = self.guess(designs)
         variance = _SHIFT**2 + (_SCALE * guesses) ** 2 + _BEND**2
         if not self.designs:
@@ -163,20 +160,23 @@ def size(
         reach = _AIM * quantile * margin
         best = _best(objective, model, goal + reach, variables)
         if best is None:
-            best = _safest(model, variables)
+            best, most = _safest(model, variables, quantile)
+            if estimates and most < goal:
+                break
         repeated = any(np.abs(best - design).max() < _SAME for design in model.designs)
         if repeated or goal <= tried(best) <= goal + (1 + _TOO_SAFE) * reach:
             break
     chosen = len(estimates) - 1
     verdict = _verdict(model, estimates[chosen], goal, quantile)
+    if verdict > SizingVerdict.UNSOUND:
+        chosen = int(np.argmax(model.indices))
     for ratio in (FRONT, 1 / FRONT):
-        end = _best(
-            objective, model, -scipy.special.ndtri(min(0.4, ratio * probability)), variables
-        )
+        wanted = -scipy.special.ndtri(min(_LIKELY, ratio * probability))
+        end = _best(objective, model, wanted, variables)
         if end is not None and verdict.sound:
             tried(end)
     design = model.designs[chosen]
-    margin = quantile * model.deviation(design)
+    margin = quantile * float(model.mean_and_deviation(design[np.newaxis])[1][0])
     ends = [_best(objective, model, goal + side, variables) for side in (-margin, margin)]
     designs = [design, *(np.full(variables, np.nan) if end is None else end for end in ends)]
     objectives = [
@@ -258,10 +258,12 @@ def _best(objective: Index, index: Index, goal: float, variables: int) -> Floats
     return best
 
 
-def _safest(index: Index, variables: int) -> Floats:
-    """Return the design of largest index."""
+def _safest(model: _Model, variables: int, quantile: float) -> tuple[Floats, float]:
+    """Return the design whose index may be the largest, and the upper end of its interval."""
     designs = _grid(np.zeros(variables), np.ones(variables))
-    return np.asarray(designs[index(designs).argmax()])
+    mean, deviation = model.mean_and_deviation(designs)
+    ends = mean + quantile * deviation
+    return np.asarray(designs[ends.argmax()]), float(ends.max())
 
 
 def _grid(low: Floats, high: Floats) -> Floats:
@@ -275,8 +277,8 @@ def _verdict(model: _Model, result: Estimate, goal: float, quantile: float) -> S
     design, index, margin = model.designs[-1], model.indices[-1], quantile * model.errors[-1]
     at_end = bool((np.minimum(design, 1 - design) < _ENDS).any())
     if index - margin < goal:
-        best = model(_grid(np.zeros(design.size), np.ones(design.size))).max()
-        return SizingVerdict.IMPOSSIBLE if best < goal else SizingVerdict.NOT_CONVERGED
+        most = _safest(model, design.size, quantile)[1]
+        return SizingVerdict.IMPOSSIBLE if most < goal else SizingVerdict.NOT_CONVERGED
     if not result.verdict.sound:
         return SizingVerdict.UNSOUND
     return SizingVerdict.AT_END if at_end else SizingVerdict.USABLE
@@ -301,7 +303,7 @@ def _front(
     for index, share in zip(indices[inside], wanted[inside], strict=True):
         row, best, margin = [share], _best(objective, model, index, variables), 0.0
         if best is not None:
-            margin = quantile * model.deviation(best)
+            margin = quantile * float(model.mean_and_deviation(best[np.newaxis])[1][0])
         for wanted_index in (index, index - margin, index + margin):
             best = _best(objective, model, wanted_index, variables)
             row.append(np.nan if best is None else float(objective(best[np.newaxis])[0]))

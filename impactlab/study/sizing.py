@@ -220,7 +220,7 @@ def _answer(
     if result.verdict in (SizingVerdict.IMPOSSIBLE, SizingVerdict.NOT_CONVERGED):
         return (
             f"No design: {result.verdict.meaning}.\n"
-            f"The last one tried: {places}; {event} with probability {known}, and at most "
+            f"The best one tried: {places}; {event} with probability {known}, and at most "
             f"{wanted:g} is wanted ({result.runs:,} runs)."
         )
     kind = "least" if sign > 0 else "greatest"
