@@ -28,6 +28,7 @@ from impactlab.figures import (
     style,
 )
 from impactlab.figures.curves import plan
+from impactlab.figures.rare_event import FIGURES
 from impactlab.methods import INDICES
 from impactlab.study.schema.measurement_files import read_measurements
 from impactlab.validation.errors import unknown
@@ -254,7 +255,7 @@ def figure(name: str, runs: xr.Dataset, analysis: xr.Dataset | None = None) -> A
     name : str
         Name of the figure's file, such as "parameter_effects".
     runs : xarray.Dataset
-        Runs of a study.
+        Runs of a study, or the result of `il.rare_event` ("likeliest_way") or `il.size` ("front").
     analysis : xarray.Dataset, optional
         Result of `il.analyse` for these runs.
 
@@ -278,7 +279,8 @@ def figure(name: str, runs: xr.Dataset, analysis: xr.Dataset | None = None) -> A
     3
     """
     analysis = xr.Dataset() if analysis is None else analysis
-    figures = catalogue.applicable(runs, analysis)
+    of_event = {figure.name: figure for figure in FIGURES if figure.applies(runs, analysis)}
+    figures = of_event or catalogue.applicable(runs, analysis)
     _require("figure", name, figures)
     with style.interactive():
         return np.array(figures[name].plot(runs, analysis).axes)

@@ -6,11 +6,17 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from impactlab.figures import labels, style
+from impactlab.figures import labels, record, style
 
 
-@style.paper
-def likeliest_way(result: xr.Dataset) -> Figure:
+@record.figure(
+    "The likeliest way beyond the limit",
+    "Each number of the likeliest run beyond the limit, with its value, in standard deviations "
+    "from its median.",
+    lambda result, _: "design_point" in result and bool(result["design_point"].notnull().all()),
+    lambda *_: (),
+)
+def likeliest_way(result: xr.Dataset, _: xr.Dataset) -> Figure:
     """Draw how far each number is from its median in the likeliest run beyond the limit."""
     result = result.sel(parameter=~result["parameter"].isin(result.attrs["words"]))
     order = np.argsort(np.abs(result["design_point"].values), kind="stable")
@@ -25,8 +31,14 @@ def likeliest_way(result: xr.Dataset) -> Figure:
     return style.finish(figure)
 
 
-@style.paper
-def front(result: xr.Dataset) -> Figure:
+@record.figure(
+    "Designs over the probability",
+    "Line: the best objective for a probability, with its interval; dots: designs whose "
+    "probability was confirmed by runs; diamond: the design chosen.",
+    lambda result, _: "tried_probability" in result,
+    lambda *_: (),
+)
+def front(result: xr.Dataset, _: xr.Dataset) -> Figure:
     """Draw the front with its interval, and each design tried with that of its probability."""
     figure, (ax,) = style.panels(1, columns=1, height=62)
     unit = labels.display(result["tried_objective"])
@@ -52,3 +64,6 @@ def front(result: xr.Dataset) -> Figure:
     ax.set_ylabel(labels.axis(str(result["objective"].attrs["long_name"]), unit.symbol))
     style.legend(figure)
     return style.finish(figure)
+
+
+FIGURES = likeliest_way, front

@@ -5,39 +5,17 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from impactlab.figures import labels, record
-from impactlab.figures.draw import draw
-from impactlab.figures.rare_event import front, likeliest_way
+from impactlab.figures import labels
+from impactlab.figures.draw import Drawing, draw
+from impactlab.figures.rare_event import FIGURES
 from impactlab.report.page import Cell, Row, Section, Table, write_listed
 from impactlab.study import RARE_EVENT, SIZING
-
-_WAY = record.Figure(
-    "likeliest_way",
-    "The likeliest way beyond the limit",
-    lambda *_: True,
-    lambda result, _: likeliest_way(result),
-    lambda *_: (
-        "Each parameter of the likeliest run beyond the limit, with its value, in standard "
-        "deviations from its median."
-    ),
-)
-_FRONT = record.Figure(
-    "front",
-    "Designs over the probability",
-    lambda *_: True,
-    lambda result, _: front(result),
-    lambda *_: (
-        "Line: the best objective for a probability, with its interval; dots: designs whose "
-        "probability was confirmed by runs; diamond: the design chosen."
-    ),
-)
 
 
 def report_rare_event(result: xr.Dataset, folder: Path) -> Path:
     """Write the report of a rare event into a study's folder; return its path."""
     figures = folder / RARE_EVENT / "figures"
-    drawn = [(_WAY, (result, result))] if result["design_point"].notnull().all() else []
-    draw(drawn, figures, str(result.attrs.get("study")))
+    draw(_drawings(result), figures, str(result.attrs.get("study")))
     names = ("probability", "low", "high", "if_none", "if_all", "check", "first_order",
              "coefficient_of_variation", "runs", "last_sample", "missing")  # fmt: skip
     numbers: list[Row] = [
@@ -65,7 +43,7 @@ def report_rare_event(result: xr.Dataset, folder: Path) -> Path:
 def report_sizing(result: xr.Dataset, folder: Path) -> Path:
     """Write the report of a design into a study's folder; return its path."""
     figures = folder / SIZING / "figures"
-    draw([(_FRONT, (result, result))], figures, str(result.attrs.get("study")))
+    draw(_drawings(result), figures, str(result.attrs.get("study")))
     last = ("tried_objective", "tried_probability", "tried_low", "tried_high")
     columns = [*(name for name in result if str(name).startswith("tried_") and name not in last)]
     columns += last
@@ -87,6 +65,10 @@ def report_sizing(result: xr.Dataset, folder: Path) -> Path:
     tables = [Table("All designs tried, in order", ["Design", *heads], rows)]
     sections = [Section("designs", "Designs", tables=tables)]
     return _written(result, folder, figures, SIZING, "Design", "size", sections)
+
+
+def _drawings(result: xr.Dataset) -> list[Drawing]:
+    return [(figure, (result, result)) for figure in FIGURES if figure.applies(result, result)]
 
 
 def _cell(value: float) -> Cell:
