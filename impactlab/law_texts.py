@@ -1,4 +1,4 @@
-"""What datasets state of contact and flow laws, as attributes of the variables that name them."""
+"""Statements on contact and flow laws in datasets: attributes of the variables that name them."""
 
 from __future__ import annotations
 

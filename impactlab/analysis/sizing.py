@@ -171,8 +171,8 @@ def size(
     if verdict > SizingVerdict.UNSOUND:
         chosen = int(np.argmax(model.indices))
     for ratio in (FRONT, 1 / FRONT):
-        wanted = -scipy.special.ndtri(min(_LIKELY, ratio * probability))
-        end = _best(objective, model, wanted, variables)
+        index = -scipy.special.ndtri(min(_LIKELY, ratio * probability))
+        end = _best(objective, model, index, variables)
         if end is not None and verdict.sound:
             tried(end)
     design = model.designs[chosen]
@@ -296,16 +296,18 @@ def _front(
 
     The last two rows are its lower and upper end.
     """
-    wanted = np.geomspace(min(_LIKELY, FRONT * probability), probability / FRONT, _FRONT_POINTS)
-    indices = -scipy.special.ndtri(wanted)
+    probabilities = np.geomspace(
+        min(_LIKELY, FRONT * probability), probability / FRONT, _FRONT_POINTS
+    )
+    indices = -scipy.special.ndtri(probabilities)
     inside = (indices >= min(model.indices) - 0.05) & (indices <= max(model.indices) + 0.05)
     rows = []
-    for index, share in zip(indices[inside], wanted[inside], strict=True):
+    for index, share in zip(indices[inside], probabilities[inside], strict=True):
         row, best, margin = [share], _best(objective, model, index, variables), 0.0
         if best is not None:
             margin = quantile * float(model.mean_and_deviation(best[np.newaxis])[1][0])
-        for wanted_index in (index, index - margin, index + margin):
-            best = _best(objective, model, wanted_index, variables)
+        for target in (index, index - margin, index + margin):
+            best = _best(objective, model, target, variables)
             row.append(np.nan if best is None else float(objective(best[np.newaxis])[0]))
         rows.append(row)
     return np.array(rows).reshape(-1, 4).T

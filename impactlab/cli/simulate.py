@@ -126,7 +126,7 @@ def _read(stated: Mapping[str, tuple[str, str]]) -> dict[str, Value]:
 
 
 def _value(name: str, option: str, text: str) -> Value:
-    """Return the value of a parameter, or of the duration. Raises ValueError naming the option."""
+    """Return a parameter's value, or the duration. Raises ValueError naming the option."""
     from impactlab.model.parameters import PARAMETERS
     from impactlab.model.quantities import whole
     from impactlab.validation.errors import unknown

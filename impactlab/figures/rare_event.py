@@ -58,7 +58,12 @@ def front(result: xr.Dataset, _: xr.Dataset) -> Figure:
     chosen: Any = {"marker": "D", "linestyle": "none", "color": style.COLOURS[1], "markersize": 5}
     value = unit(result["objective"].values[0])
     ax.plot(result["probability"].values[:1], [value], label="chosen", **chosen)
-    ax.axvline(float(result.attrs["wanted"]), color="0.4", linestyle=":", label="wanted at most")
+    ax.axvline(
+        float(result.attrs["largest_probability"]),
+        color="0.4",
+        linestyle=":",
+        label="wanted at most",
+    )
     ax.set_xscale("log")
     ax.set_xlabel(labels.wrapped_axis(str(result["tried_probability"].attrs["long_name"]), ""))
     ax.set_ylabel(labels.axis(str(result["objective"].attrs["long_name"]), unit.symbol))

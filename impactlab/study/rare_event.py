@@ -101,7 +101,7 @@ class LimitRuns:
         return str(attrs.get("long_name", parameter.replace("_", " ")))
 
     def stated(self, parameter: str, value: Any) -> str:
-        """Return a value of a parameter with its unit, or a word."""
+        """Return the value with its unit, or a word."""
         if isinstance(self.sampling.varied[parameter], Choice):
             return str(value)
         return engineering(float(value), str(self.first[parameter].attrs.get("units", "1")))

@@ -86,7 +86,7 @@ def sizing(
         arguments=f" {' '.join(variables)} --probability {probability:g}{options}",
         confidence=study.analysis.confidence,
         target=target,
-        wanted=probability,
+        largest_probability=probability,
         objective=name,
         answer=_answer(result, solver, variables, sign, name, probability),
     )
@@ -202,7 +202,7 @@ def _answer(
     variables: Sequence[str],
     sign: float,
     name: str,
-    wanted: float,
+    largest: float,
 ) -> str:
     """Return the findings in sentences: the design first."""
     estimate, confidence = result.probability, 100 * solver.declared.analysis.confidence
@@ -221,11 +221,11 @@ def _answer(
         return (
             f"No design: {result.verdict.meaning}.\n"
             f"The best one tried: {places}; {event} with probability {known}, and at most "
-            f"{wanted:g} is wanted ({result.runs:,} runs)."
+            f"{largest:g} is wanted ({result.runs:,} runs)."
         )
     kind = "least" if sign > 0 else "greatest"
     lines = [
-        f"The design of {kind} {label} for which {event} with probability at most {wanted:g} has "
+        f"The design of {kind} {label} for which {event} with probability at most {largest:g} has "
         f"{places}.",
         f"Probability there: {known}, by {estimate.runs:,} of {result.runs:,} runs.",
     ]

@@ -41,7 +41,7 @@ def test_a_sample_draws_each_number_equally_often(study):
 
 
 def test_indices_are_those_of_the_product(study):
-    """Of y = n x: Var n = 5/4, Var x = 1/12, and their means 5/2 and 1/2."""
+    """With y = n x: Var n = 5/4, Var x = 1/12, and their means 5/2 and 1/2."""
     indices = il.analyse(study.run(workers=1))
     variance = (5 / 4 + 25 / 4) * (1 / 12 + 1 / 4) - (5 / 4) ** 2
     n, x = 5 / 4 / 4 / variance, 25 / 4 / 12 / variance

@@ -38,7 +38,7 @@ def test_scheduler_workers_and_dashboard_listen_on_the_loopback_alone(kind):
 
 
 def test_workers_start_where_signals_have_no_mask(monkeypatch):
-    """As on Windows, where multiprocessing has no tracker of resources either."""
+    """Windows, where multiprocessing has no tracker of resources, has none either."""
     monkeypatch.delattr(signal, "pthread_sigmask")
     monkeypatch.delattr(engine, "resource_tracker")
     with Engine("threads", workers=1).client() as client:
