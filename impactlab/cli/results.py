@@ -276,8 +276,8 @@ def rare(
     """Estimate the probability of a rare event.
 
     Draws samples that move towards the limit, solves them, and prints the probability and the
-    likeliest way beyond the limit. Writes rare_event.nc and its report, rare_event.html, to
-    results/NAME. Runs are kept there in rare_event, and are not solved again.
+    likeliest way beyond the limit. Writes rare_event.nc and rare_event.html, its report, to
+    results/NAME; runs are kept there, and are not solved again.
     """
     stop_solving()
     from impactlab.report.rare_event import report_rare_event
@@ -315,8 +315,8 @@ def size(
 
     Design variables have the distribution uniform in the study, which states their ranges; the
     other parameters scatter. Prints the values for which the response exceeds its limit with at
-    most the probability wanted, confirmed by runs. Writes sizing.nc and its report, sizing.html, to
-    results/NAME. Runs are kept there in sizing, and are not solved again.
+    most the probability wanted, confirmed by runs. Writes sizing.nc and sizing.html, its report, to
+    results/NAME; runs are kept there, and are not solved again.
     """
     stop_solving()
     from impactlab.report.rare_event import report_sizing
@@ -328,17 +328,9 @@ def size(
     declared = read_study(study)
     folder, engine = steps.results_folder(declared.name), Engine("threads", workers)
     result = sizing(
-        declared,
-        folder,
-        engine,
-        variables,
-        probability,
-        minimise=minimise,
-        maximise=maximise,
-        samples=samples,
-        runs=runs,
-        target=variation,
-    )
+        declared, folder, engine, variables, probability,
+        minimise=minimise, maximise=maximise, samples=samples, runs=runs, target=variation,
+    )  # fmt: skip
     print(result.attrs["answer"], report_sizing(result, folder), sep="\n")
 
 

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from impactlab.methods.distributions import (
-    Distribution,
     Lognormal,
     LogUniform,
     Normal,
@@ -13,6 +12,7 @@ from impactlab.methods.distributions import (
     TruncatedNormal,
     Uniform,
 )
+from impactlab.methods.entries import Distribution
 
 FAMILIES = ("uniform", "loguniform", "reciprocal", "norm", "truncnorm", "lognorm", "triang")
 """Families of scipy.stats that have a counterpart."""

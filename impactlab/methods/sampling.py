@@ -24,11 +24,10 @@ from impactlab.methods.distributions import (
     DISTRIBUTIONS,
     ENTRIES,
     Choice,
-    Distribution,
-    Entry,
     Fixed,
     Integers,
 )
+from impactlab.methods.entries import Distribution, Entry
 from impactlab.methods.record import Indices
 from impactlab.methods.runs import Sample
 from impactlab.model.parameters import PROFILE_FIXED, SPHERES_FIXED, Parameter, Value

@@ -18,7 +18,8 @@ import impactlab as il
 from impactlab.figures.catalogue import CATALOGUE as INDEX_FIGURES
 from impactlab.files import read_netcdf
 from impactlab.methods import METHODS
-from impactlab.methods.distributions import ENTRIES, Entry, Fixed
+from impactlab.methods.distributions import ENTRIES, Fixed
+from impactlab.methods.entries import Entry
 from impactlab.methods.sampling import Sampling
 from impactlab.model.parameters import PARAMETERS, flatten
 from impactlab.study.schema.readers import read_study
@@ -280,7 +281,7 @@ def test_indices_are_drawn_as_in_the_report(sobol_study, pyplot):
 def test_a_client_of_ones_own_solves_and_stays_open(folder):
     from distributed import Client
 
-    local = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": None}
+    local = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": ":0"}
     with Client(processes=False, **local) as client:
         runs = small().run(client=client)
         assert client.submit(int, 3).result() == 3

@@ -23,7 +23,7 @@ import scipy  # its stats are loaded when first used
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from impactlab.methods.distributions import Distribution
+from impactlab.methods.entries import Distribution
 from impactlab.types import Floats
 
 HIGHEST_DEGREE = 20

@@ -27,7 +27,8 @@ from scipy.linalg import hadamard
 from impactlab.analysis.convergence import points
 from impactlab.analysis.convergence.axes import NODES, without_limit
 from impactlab.analysis.convergence.judgement import numerical_uncertainty
-from impactlab.methods.distributions import Choice, Distribution
+from impactlab.methods.distributions import Choice
+from impactlab.methods.entries import Distribution
 from impactlab.methods.runs import usable
 from impactlab.model.case_table import case_table
 from impactlab.model.cost import node_steps

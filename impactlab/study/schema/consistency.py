@@ -8,7 +8,8 @@ import numpy as np
 from impactlab import wings
 from impactlab.analysis import ANALYSES
 from impactlab.methods import NO_DISTRIBUTION
-from impactlab.methods.distributions import Choice, Distribution, Integers
+from impactlab.methods.distributions import Choice, Integers
+from impactlab.methods.entries import Distribution
 from impactlab.methods.grid import Grid
 from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
