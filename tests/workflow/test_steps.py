@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ import xarray as xr
 from command_line import SMALL, called, here
 from command_line import done as impactlab
 
+from impactlab import paper_impact, simulate_many
 from impactlab.files import write_netcdf
 from impactlab.model.quantities import si
 from impactlab.report.answer import answers
@@ -33,6 +35,20 @@ sampling:
     velocity: {distribution: uniform, low: 1 m/s, high: 2 m/s}
     sphere_density: {distribution: uniform, low: 7000, high: 8000}
 responses: [peak_force]
+"""
+
+EXCEEDANCE = """
+title: Exceedance
+impact: {base: paper, beam_model: rigid}
+duration: 1 ms
+sampling:
+  method: pawn
+  samples: 128
+  parameters:
+    velocity: {distribution: uniform, low: 1 m/s, high: 4 m/s}
+    sphere_density: {distribution: normal, mean: 7800, standard_deviation: 200}
+responses: [peak_force]
+limits: {peak_force: 24 kN}
 """
 
 
@@ -118,6 +134,25 @@ def test_kernels_are_compiled_on_demand(tmp_path):
     kept = [path.name for folder in folders for path in folder.glob("*.kernel")]
     kernels = ("euler_bernoulli", "timoshenko", "lumped", "modal", "extended_modal", "close_gaps")
     assert all(any(f".{kernel}-" in name for name in kept) for kernel in kernels)
+
+
+def test_designs_and_rare_events_are_printed_and_reported(folder):
+    """The force grows with velocity and density: 1 % of the spheres are denser than 8265 kg/m3."""
+    (folder / "studies" / "exceedance.yaml").write_text(EXCEEDANCE)
+    command = ("size", "studies/exceedance.yaml", "velocity", "--probability", "0.01")
+    assert "minimise" in called(*command, cwd=folder).stderr
+    answer, *_, page = impactlab(*command, "--maximise", "velocity", cwd=folder).stdout.splitlines()
+    assert page == "results/exceedance/sizing.html"
+    chosen = float(re.search(r"impact velocity ([\d.]+) m/s", answer)[1])
+    dense = {"velocity": [0.98 * chosen, 1.03 * chosen], "sphere_density": [8265.0, 8265.0]}
+    impact = replace(paper_impact(), beam_model="rigid")
+    below, above = simulate_many(impact, duration="1 ms", varied=dense).peak_force.values
+    assert below < 24e3 < above
+    rare = EXCEEDANCE.replace("uniform, low: 1 m/s, high: 4 m/s", f"fixed, value: {chosen}")
+    (folder / "studies" / "rare.yaml").write_text(rare)
+    answer, *_, page = impactlab("rare", "studies/rare.yaml", cwd=folder).stdout.splitlines()
+    assert page == "results/rare/rare_event.html"
+    assert 0.003 < float(re.search(r"with probability ([\d.e-]+) ", answer)[1]) < 0.0101
 
 
 def test_a_sample_grows_and_solves_nothing_twice(folder):
