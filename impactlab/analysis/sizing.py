@@ -12,12 +12,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import scipy  # its stats and special are loaded when first used
+from threadpoolctl import threadpool_limits
 
 from impactlab.analysis.rare_event import Estimate, estimate
 from impactlab.types import Floats
 from impactlab.verdicts import Verdict
 
-MOST_VARIABLES = 3
+MOST_VARIABLES = 2
 MOST_ESTIMATES = 10
 _TERMS = 4  # pilot runs per term of the quadratic
 _FEWEST_PILOT_RUNS = 200
@@ -25,7 +26,7 @@ _PILOT_SPREAD = 1.5  # standard deviations of the pilot's scores: the limit lies
 _SHIFT, _SCALE, _BEND, _LENGTH = 2.0, 1.0, 2.0, 0.4
 """Standard deviations of the difference: one for all designs, one per unit of the first guess, one
 that varies over designs, and over which share of the ranges it does."""
-_POINTS = {1: 201, 2: 41, 3: 17}  # of a grid, per design variable
+_POINTS = {1: 201, 2: 41}  # of a grid, per design variable
 _ZOOMS, _ZOOM = 6, 0.2
 _SAME = 1e-3  # share of a range within which two designs are one
 _AIM, _TOO_SAFE = 1.2, 1.0
@@ -117,6 +118,7 @@ def _covariance(first: Floats, second: Floats, guesses: Floats, others: Floats) 
     return np.asarray(_SHIFT**2 + _SCALE**2 * np.outer(guesses, others) + bend)
 
 
+@threadpool_limits.wrap(limits=1)  # type: ignore[untyped-decorator]
 def size(
     solve: Response,
     objective: Index,
@@ -135,7 +137,8 @@ def size(
 
     solve: from designs in the unit cube (runs, variable) and standard normal scores (runs,
     parameter) to the response, (runs,), NaN where it is missing. objective: of designs. samples,
-    runs, target: of each estimate (impactlab.analysis.rare_event).
+    runs, target: of each estimate (impactlab.analysis.rare_event). One thread of linear algebra
+    gives the same bits on any number of processors.
     """
     goal, quantile = -scipy.special.ndtri(probability), scipy.special.ndtri(0.5 + confidence / 2)
     pilot, guess = _first_guess(solve, variables, parameters, limit, seed)

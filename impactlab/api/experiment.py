@@ -263,7 +263,7 @@ def size(
         Sample of any method with one limit. The distributions of the design variables are
         `Uniform` or `LogUniform`, and state their ranges.
     variables : sequence of str
-        Names of the design variables, one to three.
+        Names of the design variables, one or two.
     probability : float
         Largest probability wanted, from 1e-6 to 0.3.
     minimise : str, default "mass"

@@ -295,7 +295,7 @@ def rare(
 def size(
     study: StudyFile,
     variables: Annotated[
-        list[str], typer.Argument(metavar="PARAMETER...", help="Design variables, one to three.")
+        list[str], typer.Argument(metavar="PARAMETER...", help="Design variables, one or two.")
     ],
     probability: Annotated[float, typer.Option(help="Largest probability wanted.")],
     minimise: Annotated[

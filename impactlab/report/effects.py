@@ -272,7 +272,7 @@ def _comparison(runs: xr.Dataset, dim: str) -> str:
 
 
 def _contrast(runs: xr.Dataset, name: str, dim: str) -> str:
-    """Return the change of a response from the first to the last value of a parameter."""
+    """Return the change of the response from the first to the last value."""
     values, is_number = finite(runs, name), runs[dim].dtype.kind in "if"
     if not is_number and values.sizes[dim] > 2:
         return _by_word(runs, values, dim)

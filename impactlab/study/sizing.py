@@ -99,7 +99,8 @@ def _check_variables(solver: LimitRuns, variables: Sequence[str]) -> None:
     varied = solver.sampling.varied
     for variable in variables:
         if variable not in varied:
-            raise ValueError(f"size: variables: {unknown('parameter', variable, varied)}")
+            message = unknown("parameter", variable, varied)
+            raise ValueError(f"size: variables: {variable!r}: {message}")
         if not isinstance(varied[variable], Uniform | LogUniform):
             raise ValueError(
                 f"size: variables: {variable} has no range: give it the distribution uniform, from "
@@ -129,7 +130,8 @@ def _objective(
     if maximise or name != MASS or not isinstance(study, ImpactStudy):
         mass = [MASS] if isinstance(study, ImpactStudy) and not maximise else []
         key = "maximise" if maximise else "minimise"
-        raise ValueError(f"size: {key}: {unknown('objective', name, [*mass, *variables])}")
+        message = unknown("objective", name, [*mass, *variables])
+        raise ValueError(f"size: {key} = {name!r}: {message}")
 
     def mass_of_beam(designs: Floats) -> Floats:
         columns = {variable: column(row) for variable, row in values(designs).items()}
@@ -217,6 +219,8 @@ def _answer(
         f"{estimate.probability:.2g} ({estimate.low:.2g} to {estimate.high:.2g}, {confidence:g} % "
         f"interval)"
     )
+    if np.isnan(estimate.probability):
+        known = "unknown, because the runs allowed do not reach the limit"
     if result.verdict in (SizingVerdict.IMPOSSIBLE, SizingVerdict.NOT_CONVERGED):
         return (
             f"No design: {result.verdict.meaning}.\n"

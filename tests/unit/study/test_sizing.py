@@ -72,9 +72,9 @@ def test_the_greatest_load_is_the_one_with_the_probability(tmp_path):
     ("variables", "settings", "reason"),
     [
         (["area"], {"probability": 0.5}, "probability = 0.5: must be from 1e-06 to 0.3"),
-        (["are"], {"probability": 0.01}, "did you mean 'area'"),
+        (["are"], {"probability": 0.01}, "'are': unknown parameter; did you mean 'area'"),
         (["load"], {"probability": 0.01}, "load has no range: give it the distribution uniform"),
-        ([], {"probability": 0.01}, "must be 1 to 3 different parameters"),
+        ([], {"probability": 0.01}, "must be 1 to 2 different parameters"),
         (["area"], {"probability": 0.01}, "minimise"),
         (["area"], {"probability": 0.01, "minimise": "load"}, "minimise"),
         (["area"], {"probability": 0.01, "maximise": "mass"}, "maximise"),
@@ -84,6 +84,14 @@ def test_the_greatest_load_is_the_one_with_the_probability(tmp_path):
 def test_settings_that_are_wrong_are_refused(tmp_path, variables, settings, reason):
     with pytest.raises(ValueError, match=reason):
         il.size(study(tmp_path), variables, workers=1, **settings)
+
+
+def test_a_limit_that_no_run_reaches_gives_no_design(tmp_path):
+    rod = study(tmp_path, limits={"value": 1000})
+    result = il.size(rod, ["area"], probability=0.01, minimise="area", workers=1)
+    assert result.answer.startswith("No design: no estimate allowed meets the probability")
+    assert "unknown, because the runs allowed do not reach the limit" in result.answer
+    assert "nan" not in result.answer
 
 
 def test_the_mass_is_that_of_the_beam(tmp_path):
