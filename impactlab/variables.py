@@ -108,8 +108,7 @@ WARNINGS: dict[str, tuple[int, str]] = {
     "contact_circle_outside_data": (
         outputs.CONTACT_CIRCLE_OUTSIDE_DATA,
         "the contact radius is above 0.6 of half the beam's depth or 0.3 of half its width, "
-        "beyond what the corrections are tested for: forces may be off by 6 %, indentations "
-        "by 4 %",
+        "beyond what the corrections are tested for: forces and indentations may be off by 10 %",
     ),
     "struck_near_end": (
         outputs.STRUCK_NEAR_END,

@@ -46,7 +46,7 @@ log = logging.getLogger(__name__)
 SOLID_CASE = np.dtype((np.record, [*CASE.descr, ("element_size", float)]))  # the table's records
 SOLID_MODEL = len(BEAM_MODELS)  # number of the 3-D FE model, after those of the kernels
 _BEAM_MODELS_ONLY = (
-    *("contact", "load", "compliance", "bending_compliance"),
+    *("contact", "load", "compliance", "bending_compliance", "crowding"),
     *("shear_coefficient", "shear_stiffness", "axis_held_left", "axis_held_right"),
     *("nodes", "points", "rule", "scheme", "courant"),
 )

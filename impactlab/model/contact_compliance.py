@@ -124,6 +124,8 @@ STRESS_ACROSS = np.array(
 """Stress across the beam, likewise."""
 SPHERE = (0.0158, -0.2795, -0.3359)
 """c_s = c E R at these ratios."""
+CROWDING = 1.04
+"""c times the square of half the width, of a beam at least as deep as wide."""
 FREE_STRIP = 720.0 / 4.730041**4
 """Inertia of the shape y^2 - B^2/12 that swings as fast as a strip of plate with free edges."""
 STRIP_STIFFNESS = np.array(
@@ -191,11 +193,12 @@ def case_fields(impact: Impact) -> dict[str, Floats]:
     local = "compliance", "bending_compliance", "axis_compliance", "axis_bending"
     across = "width_stiffness", "width_inertia", "width_lever", "width_twist"
     stress = "stress_along", "stress_across"
-    fields: dict[str, Floats] = dict.fromkeys((*local, *across, *stress), np.zeros(()))
+    fields: dict[str, Floats] = dict.fromkeys((*local, *across, *stress, "crowding"), np.zeros(()))
     if np.any(np.not_equal(impact.contact_compliance, "half_space")):
         values = *contact_compliance(impact), *axis_compliance(impact)
         fields |= zip(local, values, strict=True)
         fields |= zip(across, bending_across(impact)[:4], strict=True)
+        fields["crowding"] = crowding(impact)
     if np.any(np.not_equal(impact.contact_prestress, "ignored")):
         fields |= zip(stress, contact_stress(impact), strict=True)
     return fields
@@ -231,6 +234,18 @@ def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
         np.where(strip, value - part, value) for value, part in zip((c, gamma), across, strict=True)
     )
     return np.where(applies, c, 0.0), np.where(applies, gamma, 0.0)
+
+
+def crowding(impact: Impact) -> Floats:
+    """Return c of contact/finite_element.py (1/m2) of an impact, or of many; zero for half-spaces.
+
+    That of a beam at least as deep as wide goes down to zero on one that is twice as wide as deep:
+    there, the paper's beam, nothing of it is seen in 3-D. Fitted to 3-D runs of seven narrow beams
+    (tests/benchmarks/narrow_beams.py).
+    """
+    width, applies = impact.beam.width, np.not_equal(impact.contact_compliance, "half_space")
+    share = np.clip(2.0 * np.asarray(impact.beam.depth / width) - 1.0, 0.0, 1.0)
+    return np.where(applies, CROWDING * 4.0 * share / (width * width), 0.0)
 
 
 def axis_compliance(impact: Impact) -> tuple[Floats, Floats]:

@@ -59,7 +59,7 @@ CASE = record(
     strike_position strike_interval
     stiffness_left stiffness_right rotational_stiffness_left rotational_stiffness_right
     mass_damping stiffness_damping damping_ratio foundation_stiffness
-    compliance bending_compliance stress_along stress_across
+    compliance bending_compliance stress_along stress_across crowding
     width_stiffness width_inertia width_lever width_twist axis_compliance axis_bending
     """,
     integers="contact beam_model load contact_prestress support_left support_right"

@@ -38,9 +38,10 @@ class Pair(NamedTuple):
     stress (Pa) and Poisson's ratio. compliance (m/N), bending (m2): approach of the bodies beyond
     that of half-spaces, per force and per M/(EI) at mid-span; zero for half-spaces.
     prestress: depth of the beam (m; 0: its stress is ignored) and stresses along and across it per
-    force (1/m2), see contact/prestress.py. shape: of the law's curve by the two metals. rate: the
-    law by which S_y grows with the strain rate, up to `hardest` (Pa), at which the other body would
-    yield (contact/rate.py).
+    force (1/m2), see contact/prestress.py. shape, crowding (1/m2): of the law's curve by the two
+    metals, and by the sides of the beam (contact/finite_element.py). rate: the law by which S_y
+    grows with the strain rate, up to `hardest` (Pa), at which the other body would yield
+    (contact/rate.py).
     """
 
     law: int
@@ -52,6 +53,7 @@ class Pair(NamedTuple):
     bending: float = 0.0
     prestress: tuple[float, float, float] = (0.0, 0.0, 0.0)
     shape: Shape = LIKE_METALS
+    crowding: float = 0.0
     rate: RateLaw = RateLaw()
     hardest: float = np.inf
 
@@ -99,15 +101,18 @@ def make_pair(case: Record) -> Pair:
     kinematic = kinematic / hardening if hardening > 0.0 else 0.0
     hardening /= case.beam_youngs_modulus
     depth = case.beam_depth if case.contact_prestress > 0 else 0.0
+    crowding = case.crowding
     if S_y > case.sphere_yield_stress:
         S_y, nu, depth = case.sphere_yield_stress, case.sphere_poissons_ratio, 0.0
         share, hardness, hardening = 1.0 - share, 1.0 / hardness, 0.0
+        crowding = 0.0
         rate = RateLaw(0.0, 0.0, 0.0)
     compliances = case.compliance, case.bending_compliance
     prestress = depth, case.stress_along, case.stress_across
     metals = shape(E / S_y, share, nu, hardening, kinematic, hardness)
     hardest = case.sphere_yield_stress
-    return Pair(case.contact, E, R, S_y, nu, *compliances, prestress, metals, rate, hardest)
+    of_contact = prestress, metals, crowding, rate, hardest
+    return Pair(case.contact, E, R, S_y, nu, *compliances, *of_contact)
 
 
 @compiled
@@ -125,7 +130,7 @@ def pair_curve(pair: Pair, delta: float, S_y: float) -> Unloading:
     S_y: the yield stress (Pa) at the contact's strain rate.
     """
     if pair.law == _OF_METALS:
-        return finite_element.curve(delta, pair.E, pair.R, S_y, pair.nu, pair.shape)
+        return finite_element.curve(delta, pair.E, pair.R, S_y, pair.nu, pair.shape, pair.crowding)
     return curve(pair.law, delta, pair.E, pair.R, S_y, pair.nu)
 
 

@@ -76,14 +76,17 @@ def metals_within_the_data(number):
         yield ratio, shape(ratio, share, 0.05 + 0.4 * u[2], hardening, u[6], hardness)
 
 
-def test_no_metal_creates_energy():
+@pytest.mark.parametrize("crowding", [0.0, 1e3, 1e5])
+def test_no_metal_creates_energy(crowding):
     """Unloading gives back less than the work of loading; the dent is between 0 and delta."""
     for ratio, of in metals_within_the_data(256):
         S_y = E / ratio
         delta_y = yield_indentation(E, R, S_y)
         deepest = max(1.5 * finite_element.LARGEST_DEPTH * R / delta_y, 3.0)
         x = 1.0 + np.geomspace(1e-3, deepest, 160)
-        F, _, delta_r, n = np.array([curve(value * delta_y, E, R, S_y, NU, of) for value in x]).T
+        F, _, delta_r, n = np.array(
+            [curve(value * delta_y, E, R, S_y, NU, of, crowding) for value in x]
+        ).T
         F, dent = F / (4.0 / 3.0 * E * np.sqrt(R) * delta_y**1.5), delta_r / delta_y
         work = 0.4 + cumulative_trapezoid(np.append(1.0, F), np.append(1.0, x))
         assert (np.diff(F) > 0.0).all()
