@@ -147,7 +147,11 @@ def test_the_softer_body_yields(make_case, sphere, beam):
         sphere_poissons_ratio=0.25,
         beam_yield_stress=beam,
         beam_poissons_ratio=0.35,
+        beam_width=0.03,
+        beam_model="timoshenko",
+        contact_compliance="strip",
     )
     pair = make_pair(case)
     assert pair.S_y == 300e6
     assert pair.nu == (0.25 if sphere < beam else 0.35)
+    assert (pair.crowding > 0.0) == (sphere > beam)  # a sphere has no sides
