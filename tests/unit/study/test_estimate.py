@@ -152,7 +152,7 @@ def test_memory_and_disk_are_those_of_the_answers():
         (grid({"velocity": [1.0]}, nodes=10_000_001), "discretisation.nodes"),
         (grid({"nodes": [11, 1_000_001]}), "sampling.parameters.nodes"),
         (grid({"velocity": [1.0]}, duration="100 years"), "duration"),
-        (grid({"sphere_mass": [1e-17]}, duration="1000 s"), "sampling.parameters.sphere_mass"),
+        (grid({"sphere_mass": [1e-18]}, duration="150 s"), "sampling.parameters.sphere_mass"),
         (grid({"courant": [1e-12]}), "sampling.parameters.courant"),
         (
             grid({"beam_span": [1e-6], "beam_depth": [1e-7]}, duration="10 s"),
