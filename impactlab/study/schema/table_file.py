@@ -237,7 +237,8 @@ def _input(study: TableStudy, name: str, cells: Cells) -> NDArray[Any]:
         listed = distribution.arguments()["values"]
         for line, cell in cells:
             if cell not in listed:
-                raise _at_cell(path, name, line, f"{cell!r} {unknown('word', cell, listed)}")
+                reason = unknown("word", cell, listed)
+                raise StudyError(Problem(str(path), f"line {line}, {name}", reason, cell))
         if absent := set(listed) - {cell for _, cell in cells}:
             reason = f"no row holds {min(absent)!r}: leave it out"
             raise StudyError(Problem(str(study.path), f"inputs.{name}.values", reason))

@@ -118,6 +118,24 @@ def test_go_gives_results_and_a_report_that_speaks_of_rows(tmp_path, columns, mo
     }
 
 
+def test_a_choice_makes_words_of_numbers(tmp_path, columns):
+    columns["metal"] = np.where(columns["metal"] == "steel", "1", "2")
+    words = "metal: {distribution: choice, values: ['2', '1'], weights: [1, 3]}"
+    runs = runs_of_file(read_any(_written(tmp_path, columns, TEXT.replace("metal:", words))))
+    assert runs["metal"].dtype.kind == "U"
+    assert runs["metal"].attrs["values"] == ["2", "1"]
+    assert runs["metal"].attrs["weights"] == [0.25, 0.75]
+    steel = il.analyse(runs).sel(parameter="metal", response="force")["delta_first_order"]
+    share = 0.25 / (0.25 + 4 * 16 / 12)  # of the variance: of two words, and of 2 x speed
+    assert abs(steel - share) < 0.1
+    columns["metal"][3] = "3"
+    with pytest.raises(StudyError, match="line 5, metal = '3': unknown word"):
+        runs_of_file(read_any(_written(tmp_path, columns, TEXT.replace("metal:", words))))
+    absent = words.replace("'1'", "'1', '3', '4'").replace("[1, 3]", "[1, 3, 1, 1]")
+    with pytest.raises(StudyError, match=r"inputs\.metal\.values: no row holds '4'"):
+        runs_of_file(read_any(_written(tmp_path, columns, TEXT.replace("metal:", absent))))
+
+
 def _edited(columns, name, row, cell):
     edited = {key: list(values) for key, values in columns.items()}
     edited[name][row] = cell
