@@ -13,7 +13,7 @@
 # make site    the same, then its pages, links and code blocks are tested
 # make release sdist and wheel in dist/, checked; nothing is uploaded or tagged
 # make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
-#              its kernels, and what a second thread brings; both schemes' cost and error;
+#              its kernels, and what a second thread brings; both schemes' cost and error; estimated cost;
 #              how often the intervals of Sobol indices hold: wants an idle machine
 # make scaling overhead, throughput and peak memory of a study: SCALING_ARGS=--full for a million runs
 # make mutants the tests' own test: faults seeded into the kernels, and what catches each
@@ -124,6 +124,7 @@ bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/batch.py
 	$(IN_VENV) python tests/benchmarks/one_run.py
 	$(IN_VENV) python tests/benchmarks/schemes.py
+	$(IN_VENV) python tests/benchmarks/cost.py
 	$(IN_VENV) python tests/benchmarks/sobol_coverage.py
 
 scaling: $(MADE)-dev

@@ -24,6 +24,7 @@ from impactlab.figures.record import listed
 from impactlab.files import read_netcdf, write_netcdf
 from impactlab.report.page import leading
 from impactlab.report.results import FINDINGS
+from impactlab.report.verification import uncertainty
 from impactlab.study import steps
 from impactlab.study.schema.readers import read_verification
 from impactlab.verification.outcomes import unpacked
@@ -247,22 +248,28 @@ def _verification() -> None:
     lines = [
         f"**{passed} of {total} comparisons in {len(outcomes)} checks passed** when this site was "
         "built.\n",
-        "| check | comparisons | nearest to its tolerance | ours | independent | of tolerance |",
-        "|---|---|---|---|---|---|",
+        "| check | comparisons | nearest to its tolerance | ours | independent | its uncertainty | "
+        "of tolerance |",
+        "|---|---|---|---|---|---|---|",
     ]
     for each in outcomes:
-        row = [each.title, str(len(each.finding.comparisons)), "", "", "", ""]
+        row = [each.title, str(len(each.finding.comparisons)), *[""] * 5]
         if (worst := each.worst) is not None:
             unit = "" if worst.units == "1" else f" {worst.units}"
             row[2] = f"{worst.quantity}, {worst.where}"
             row[3:5] = (f"{value:.5g}{unit}" for value in (worst.ours, worst.independent))
             absolute = worst.measure == "absolute"
             limit = f"{worst.tolerance:.2g}{unit}" if absolute else f"{100 * worst.tolerance:.2g} %"
-            row[5] = f"{100 * worst.ratio:.0f} % of {limit}"
+            row[5] = uncertainty(worst)
+            row[6] = f"{100 * worst.ratio:.0f} % of {limit}"
         row[0] += "" if each.verdict == "passed" else f": **{each.verdict}**"
         lines.append("| " + " | ".join(cell.replace("|", r"\|") for cell in row) + " |")
     lines += ["", ":::{dropdown} Where the independent values come from"]
-    lines += [*(f"- {each.title}: {each.source}" for each in outcomes), ":::"]
+    lines += [
+        f"- {each.title}: {each.source}. Uncertainty ({each.reference}): {each.basis}."
+        for each in outcomes
+    ]
+    lines += [":::"]
     page.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

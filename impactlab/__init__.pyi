@@ -3,7 +3,6 @@ from .analysis.analyse import analyse as analyse
 from .analysis.multifidelity import FidelityEstimate as FidelityEstimate
 from .analysis.multifidelity import Multifidelity as Multifidelity
 from .analysis.surrogate import load_surrogate as load_surrogate
-from .api.data import runs_of_table as runs_of_table
 from .api.definition import Study as Study
 from .api.experiment import calibrate as calibrate
 from .api.experiment import compare as compare
@@ -49,6 +48,7 @@ from .report.tables import table as table
 from .simulate import simulate as simulate
 from .simulate import simulate_many as simulate_many
 from .study.solvers.own import Function as Function
+from .study.table import runs_of_table as runs_of_table
 from .validation.errors import StudyError as StudyError
 
 __version__: str

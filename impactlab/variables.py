@@ -292,11 +292,16 @@ VARIABLES = RESPONSES | _OF_WINGS | _AXES
 
 
 def of_function(data: xr.Dataset | xr.DataArray) -> bool:
-    """Return whether a dataset, or a variable of one, is of a function in place of the solver.
+    """Return whether a dataset, or a variable of one, is of a function, or a table, of the user.
 
     Its names mean what their attributes say; they are none of the quantities in these tables.
     """
-    return "function" in data.attrs
+    return "function" in data.attrs or of_table(data)
+
+
+def of_table(data: xr.Dataset | xr.DataArray) -> bool:
+    """Return whether a dataset holds the rows of a table, which no method has drawn."""
+    return data.attrs.get("method") == "table"
 
 
 def attributes(name: str) -> dict[str, Any]:

@@ -182,9 +182,13 @@ def export(
     """
     from impactlab.figures.access import responses as known
     from impactlab.report.results import open_stored, stored_files
+    from impactlab.report.tables import SUFFIXES
     from impactlab.report.tables import export as write_tables
     from impactlab.study.steps import results_folder
+    from impactlab.validation.errors import unknown
 
+    if to not in SUFFIXES:
+        raise ValueError(f"--to = {to!r}: {unknown('format', to, SUFFIXES)}")
     folder = results_folder(study)
     with open_stored(stored_files(folder)) as (_, (runs, *analyses)):
         names = chosen("--responses", responses, known(runs))

@@ -7,7 +7,7 @@ import os
 import re
 from dataclasses import replace as replaced
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -24,7 +24,7 @@ from impactlab.cli.options import (
 from impactlab.cli.studies import shipped
 
 if TYPE_CHECKING:
-    from impactlab.study.schema.declarations import AnyStudy, Verification
+    from impactlab.study.schema.declarations import AnyStudy, Declared
 
 Threads = Annotated[int, typer.Option(min=1, help="Threads.")]
 Force = Annotated[
@@ -169,10 +169,11 @@ def run(
     from impactlab.study.design import study_of_design
     from impactlab.study.engine import Engine, read_profile
     from impactlab.study.estimate import estimate
-    from impactlab.study.schema.readers import read_study
+    from impactlab.study.schema.readers import read_runs, read_study
 
     stored = read_netcdf(design_file, "design") if design_file.suffix == ".nc" else None
-    study = read_study(design_file) if stored is None else study_of_design(stored, design_file)
+    read: Any = read_study if dry_run else read_runs
+    study = read(design_file) if stored is None else study_of_design(stored, design_file)
     path = output or steps.results_folder(study.name) / "runs.nc"
     if dry_run:
         cost = estimate(steps.resolved(study, path.parent) or study, path.parent, workers)
@@ -365,7 +366,7 @@ def go(
 
 def _solve(
     study: Path,
-    declared: AnyStudy | Verification,
+    declared: Declared,
     stepwise: bool,
     *,
     workers: int,
@@ -376,13 +377,14 @@ def _solve(
     from impactlab.methods.sampling import RandomSample
     from impactlab.methods.sobol import Sobol
     from impactlab.study import steps
-    from impactlab.study.schema.declarations import ImpactStudy, Verification
+    from impactlab.study.schema.declarations import ImpactStudy, StudyBase, Verification
 
     if isinstance(declared, Verification):
         verify(study, replace=replace)
         return
     folder = steps.results_folder(declared.name)
     sampling = declared.sampling if isinstance(declared, ImpactStudy) else None
+    stepwise = stepwise and isinstance(declared, StudyBase)
     if stepwise:
         if isinstance(sampling, RandomSample):
             recommend(study, workers=workers)

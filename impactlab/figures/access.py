@@ -13,7 +13,7 @@ import xarray as xr
 from impactlab import wings
 from impactlab.figures import labels
 from impactlab.model.parameters import PARAMETERS
-from impactlab.variables import FAILED, RESPONSES, of_function, reasons, status_bits
+from impactlab.variables import FAILED, RESPONSES, of_function, of_table, reasons, status_bits
 
 SAMPLED = ("time", "field_time", "x", "z", "strike", "sphere")
 """Dimensions within a run; every other dimension of a variable of runs.nc is the design's."""
@@ -145,9 +145,10 @@ def causes(runs: xr.Dataset, mask: xr.DataArray) -> Counter[str]:
     """Return the number of the marked runs per reason; mask: bool on the design dimensions."""
     status, chosen = xr.broadcast(runs.get("status", xr.zeros_like(mask, dtype=int)), mask)
     bits, counts = np.unique(status.values[chosen.values], return_counts=True)
+    unexplained = "the table has no value there" if of_table(runs) else UNEXPLAINED
     tally: Counter[str] = Counter()
     for bit, number in zip(bits.tolist(), counts.tolist(), strict=True):
-        tally["; ".join(reasons(int(bit))) or UNEXPLAINED] += number
+        tally["; ".join(reasons(int(bit))) or unexplained] += number
     return tally
 
 

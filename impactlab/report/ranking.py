@@ -9,6 +9,7 @@ from impactlab.methods.record import Family
 from impactlab.methods.runs import correlations
 from impactlab.report.page import Entry
 from impactlab.report.sensitivity import decimals_of, in_units, uncertainty, with_margin
+from impactlab.variables import of_table
 from impactlab.verification.functions import FUNCTIONS
 
 _MATTERS = 0.01
@@ -40,6 +41,9 @@ def headline(runs: xr.Dataset, analysis: xr.Dataset, family: Family, response: s
         total = least / max(1.0, np.nansum(index.values))
         part = "most" if total > 0.5 else "the largest part"
         text = f"{listed} {'cause' if plural else 'causes'} {part} of the scatter of the {name}"
+        if of_table(runs):  # whose rows may be chosen, and correlated
+            verb = "explain" if plural else "explains"
+            text = f"{listed} {verb} {part} of the variance of the {name} in this table"
     if index.numerically_lost[numbers].any():
         return f"Not usable: the numerical error exceeds an index of the {name} ({listed})"
     if index.numerical.any():

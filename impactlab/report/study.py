@@ -24,6 +24,7 @@ from impactlab.report.convergence import convergence
 from impactlab.report.distribution import regime_entries
 from impactlab.report.explorer import write_explorer
 from impactlab.report.page import Cell, Row, Section, Table, described, motion, pictures, write_page
+from impactlab.variables import of_table
 
 _GRID_VALUES = 12  # a longer list of values of a grid is replaced by its range
 _FAILED_RUNS = 20  # largest number of failed runs listed one by one
@@ -131,7 +132,7 @@ def _inputs(runs: xr.Dataset) -> Section:
     groups = dict(zip(names(runs, "varied"), names(runs, "groups"), strict=False))
     changed: list[Row] = []
     for name in varied(runs):
-        values = _values(runs[name])
+        values = _values(runs[name], "rows" if of_table(runs) else "draws")
         group = [groups[name].replace("_", " ")] if groups else []
         label = labels.sentence(labels.parameter(runs[name]))
         changed.append([label, *values, *group, Cell(name, "muted")])
@@ -142,11 +143,16 @@ def _inputs(runs: xr.Dataset) -> Section:
             text = labels.values(coordinate, [0])[0] + labels.unit(coordinate)
             fixed.append([label, text, Cell(str(key), "muted")])
     head = ["Parameter", "Values", "Number", *(["Group"] if groups else []), "Key"]
-    tables = [Table("Varied parameters", head, changed)] if changed else []
+    tables = (
+        [Table("Parameters" if of_table(runs) else "Varied parameters", head, changed)]
+        if changed
+        else []
+    )
     tables += [_correlations(runs, pairs)] if (pairs := correlations(runs)) else []
     caption = "Parameters that are the same in every run"
     folded = [Table(caption, ["Parameter", "Value", "Key"], fixed)] if fixed else []
-    return Section("runs", "What was varied", tables=tables, folded=folded)
+    title = "Inputs" if of_table(runs) else "What was varied"
+    return Section("runs", title, tables=tables, folded=folded)
 
 
 def _correlations(runs: xr.Dataset, pairs: list[tuple[str, str, float]]) -> Table:
@@ -158,11 +164,14 @@ def _correlations(runs: xr.Dataset, pairs: list[tuple[str, str, float]]) -> Tabl
             f"{labels.parameter(runs[first])} and {labels.parameter(runs[second])}"
         )
         rows.append([pair, *(Cell(f"{rank:.2f}", "number") for rank in (stated, observed))])
+    if of_table(runs):  # which states none
+        caption = "Rank correlations that chance does not explain"
+        return Table(caption, ["Parameters", "In the table"], [[row[0], row[2]] for row in rows])
     caption = "Rank correlations, by a Gaussian copula; all other pairs vary independently"
     return Table(caption, ["Parameters", "As stated", "In the sample"], rows)
 
 
-def _values(coordinate: xr.DataArray) -> Row:
+def _values(coordinate: xr.DataArray, noun: str) -> Row:
     """Return values and their number, or a distribution: "uniform: low 250 MPa, high 450 MPa"."""
     unit, size, attrs, texts = labels.unit(coordinate), coordinate.size, coordinate.attrs, []
     if listed := labels.words(coordinate):
@@ -178,7 +187,7 @@ def _values(coordinate: xr.DataArray) -> Row:
             texts.append(f"{key.replace('_', ' ')} {text}{'' if ratio else unit}")
     if texts:
         name = str(attrs["distribution"]).replace("_", "-")
-        return [f"{name}: {', '.join(texts)}", Cell(f"{size} draws", "number")]
+        return [f"{name}: {', '.join(texts)}", Cell(f"{size} {noun}", "number")]
     where, between = list(range(size)), ", "
     if size > _GRID_VALUES and coordinate.dtype.kind in "if":
         numbers, between = coordinate.values, " to "
@@ -243,6 +252,8 @@ def _failed_runs(runs: xr.Dataset, failed: xr.DataArray) -> Table:
 def _place(runs: xr.Dataset, where: dict[str, int]) -> str:
     """Return the run's number in a sample and its varied parameters, in words."""
     named = [f"run {where['run']}"] if "run" in where else []
+    if of_table(runs):
+        named = [f"row {int(runs['row'][where['run']]) + 1}"]
     columns = (runs[name] for name in varied(runs) if runs[name].ndim)
     named += [labels.setting(column, [where[str(column.dims[0])]]) for column in columns]
     return ", ".join(named) or "the only run"

@@ -184,9 +184,9 @@ def export(
     OSError where a package is not installed, or a file cannot be written.
     """
     if kind not in SUFFIXES:
-        raise ValueError(f"--to = {kind!r}: {unknown('format', kind, SUFFIXES)}")
+        raise ValueError(f"to = {kind!r}: {unknown('format', kind, SUFFIXES)}")
     if (package := _NEEDED.get(kind)) and find_spec(package) is None:
-        raise OSError(f"--to {kind}: needs {package}: pip install 'impactlab[tables]'")
+        raise OSError(f"to = {kind!r}: needs {package}: pip install 'impactlab[tables]'")
     tables = {"runs" if analysis is not None else "comparisons": columns(runs, responses)}
     if analysis is not None and access.VERDICT in analysis:
         tables["indices"] = columns(analysis, responses)

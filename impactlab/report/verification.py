@@ -15,7 +15,16 @@ from impactlab.verification.finding import Comparison, Outcome, gravest_first
 from impactlab.verification.outcomes import unpacked
 
 _SHORT = 12  # longest table of passed comparisons that is not folded
-_HEAD = ["Quantity", "Case", "Ours", "Independent value", "Difference", "Tolerance", "Verdict"]
+_HEAD = [
+    "Quantity",
+    "Case",
+    "Ours",
+    "Independent value",
+    "Uncertainty of that",
+    "Difference",
+    "Tolerance",
+    "Verdict",
+]
 _DIGITS = 6
 _PLAIN = ("absolute", "relative")
 """Measures that need no name beside the number: its unit, or none, shows them."""
@@ -67,6 +76,8 @@ def write_verification(findings: xr.Dataset, figures_folder: Path, path: Path) -
 def _section(outcome: Outcome) -> Section:
     """Return the section on one check: a failed one stands out, with its failures open."""
     lead = f"Independent values: {outcome.source}. Check {outcome.name}, {outcome.seconds:.1f} s."
+    if outcome.reference:
+        lead += f" Uncertainty of the independent values ({outcome.reference}): {outcome.basis}."
     title, notes, shown, folded = outcome.title, list[str](), list[Table](), list[Table]()
     if outcome.reason:
         notes = [f"An error ended this check, which compared nothing: {outcome.reason}"]
@@ -106,19 +117,31 @@ def _summary(outcomes: Sequence[Outcome]) -> Table:
 def _row(entry: Comparison) -> Row:
     """Return a comparison: both values in one unit, error and tolerance in another."""
     unit = _display(entry, max(abs(entry.ours), abs(entry.independent)))
-    gap_unit = Display(100.0, "%") if entry.tolerance >= _PERCENT else Display(1.0, "")
-    if entry.measure == "absolute":
-        gap_unit = _display(entry, entry.tolerance)
+    gap_unit = _gap_unit(entry)
     measure = "" if entry.measure in _PLAIN else entry.measure
     return [
         labels.sentence(entry.quantity),
         entry.where,
         Cell(_value(entry.ours, unit, _DIGITS), "number"),
         Cell(_value(entry.independent, unit, _DIGITS), "number"),
+        Cell(uncertainty(entry), "number"),
         Cell(_value(entry.error, gap_unit, 2), "number", measure),
         Cell(_value(entry.tolerance, gap_unit, 2), "number"),
         "passed" if entry.passed else Cell("FAILED", "warning"),
     ]
+
+
+def _gap_unit(entry: Comparison) -> Display:
+    if entry.measure == "absolute":
+        return _display(entry, entry.tolerance)
+    return Display(100.0, "%") if entry.tolerance >= _PERCENT else Display(1.0, "")
+
+
+def uncertainty(entry: Comparison) -> str:
+    """Return the uncertainty of an independent value, in the unit of the error."""
+    if np.isnan(entry.uncertainty):
+        return "not known"
+    return _value(entry.uncertainty, _gap_unit(entry), 2) if entry.uncertainty else "exact"
 
 
 def _display(entry: Comparison, magnitude: float) -> Display:

@@ -26,15 +26,18 @@ from impactlab.files import (
     write_csv,
     write_netcdf,
 )
+from impactlab.provenance import provenance
 from impactlab.study import CALIBRATION, PARTS, REFINEMENT, RESOLUTION, SHARDS, TRIALS
 from impactlab.study.ownership import check_unclaimed, same_runs, study_file, write_runs
 from impactlab.study.schema.declarations import (
     AnyStudy,
     Auto,
+    Declared,
     FunctionStudy,
     ImpactStudy,
     Verification,
 )
+from impactlab.study.schema.table_file import TableStudy, runs_of_file
 from impactlab.study.schema.yaml_file import check_name
 from impactlab.validation.errors import StudyError
 
@@ -105,7 +108,7 @@ def resolved(
 
 
 def run(
-    study: AnyStudy,
+    study: AnyStudy | TableStudy,
     path: Path,
     engine: Engine,
     *,
@@ -116,8 +119,8 @@ def run(
 ) -> None:
     """Price a study, resolve its discretisation, draw and solve its runs; write them to `path`.
 
-    runs: its design, where it is drawn already. force: whatever it costs. replace: whatever study
-    has results there. tell: of `resolved`.
+    The rows of a table are its runs. runs: its design, where it is drawn already. force: whatever
+    it costs. replace: whatever study has results there. tell: of `resolved`.
 
     Raises StudyError where a limit is exceeded, for wrong measurements, and as `resolved` and
     `solve`; ValueError as `check_unclaimed`.
@@ -129,6 +132,9 @@ def run(
         source = study_file(changed(study, path=study.path.parent / file), path.parent)
     if not replace:
         check_unclaimed(study, path, source)
+    if isinstance(study, TableStudy):
+        write_runs(runs_of_file(study).assign_attrs(provenance(), study_file=source), path)
+        return
     declared = priced(study, path.parent, engine.workers, force, tell)
     if runs is None:
         runs = design(declared or resolved(study, path.parent, engine, tell) or study)
@@ -286,7 +292,7 @@ def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = No
         write_netcdf(refine_cases(solved, part, base_samples), path, "refinement", solved)
 
 
-def evidence(study: AnyStudy, runs: Path) -> dict[str, Path]:
+def evidence(study: Declared, runs: Path) -> dict[str, Path]:
     """Return the files beside solved runs on their numerical uncertainty, for `analyse_runs`.
 
     They hold what pilot runs of `auto`, or `recommend` of this very study, found, and `refine` of

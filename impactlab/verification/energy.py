@@ -15,7 +15,14 @@ from impactlab.solver import RULES
 from impactlab.types import Floats
 from impactlab.variables import WARNINGS
 from impactlab.verification.cases import discretised
-from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, check
+from impactlab.verification.finding import (
+    Comparisons,
+    Curve,
+    CurvePanel,
+    Finding,
+    Reference,
+    check,
+)
 from impactlab.verification.solutions import quadrature
 from impactlab.verification.solutions.beam_modes import modes_left_out, modes_on_nodes
 from impactlab.verification.solutions.contact_laws import LAWS
@@ -139,6 +146,7 @@ _DRAWN = {"leapfrog": 80, "modal": 40}  # numbers of drawn cases
 @check(
     "Balances of energy and momentum",
     "Sums over the dataset in impactlab.verification.energy; loops of Stronge's law",
+    Reference("identity", 0.0, "exact"),
 )
 def balances() -> Finding:
     """Compare each quantity at the worst of the drawn cases of each scheme.

@@ -26,7 +26,8 @@ class Comparison:
 
     ours, independent: in `units` (UDUNITS). error: the difference in the measure that `measure`
     names ("relative", "absolute", or such as "of the peak"). tolerance: the largest error that
-    passes. where: the case, in words.
+    passes. where: the case, in words. uncertainty: of the independent value, in the same measure;
+    NaN where it is not known.
     """
 
     quantity: str
@@ -37,6 +38,7 @@ class Comparison:
     error: float
     tolerance: float
     measure: str = "relative"
+    uncertainty: float = np.nan
 
     def __post_init__(self) -> None:
         """Spell the names of study files as people write them."""
@@ -192,12 +194,45 @@ class Finding:
         return bool(self.comparisons) and all(entry.passed for entry in self.comparisons)
 
 
+Kind = Literal[
+    "", "closed form", "identity", "limit", "series", "quadrature", "finite elements", "finer grid"
+]
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The independent values of a check, and their uncertainty in the measure of a comparison.
+
+    uncertainty: of all but absolute comparisons, whose values (zeros, orders, numbers of contacts)
+    are exact; NaN where it is not known. basis: what it is, and how it is known. parts: others, by
+    regular expressions of which the first that occurs in "quantity, case" counts.
+    """
+
+    kind: Kind = ""
+    uncertainty: float = np.nan
+    basis: str = ""
+    parts: Mapping[str, float] = field(default_factory=dict)
+
+    def applied(self, entry: Comparison) -> Comparison:
+        """Return a comparison with the uncertainty of its independent value."""
+        text, exact = f"{entry.quantity}, {entry.where}", entry.measure == "absolute"
+        matches = (size for part, size in self.parts.items() if re.search(part, text))
+        size = next(matches, 0.0 if exact and self.kind else self.uncertainty)
+        return replace(entry, uncertainty=size)
+
+
+ROUNDING = 1e-14
+"""Relative uncertainty of closed forms, of which each number has some rounded operations."""
+CLOSED_FORM = Reference("closed form", ROUNDING, "rounding")
+
+
 @dataclass(frozen=True)
 class Outcome:
     """A check that was run, and its result.
 
     name, title, source: those of the check. seconds: the time it took. finding: empty if an error
-    ended the check; reason: that error in words, otherwise "".
+    ended the check; reason: that error in words, otherwise "". reference, basis: kind of the
+    independent values, and how their uncertainty is known.
     """
 
     name: str
@@ -206,6 +241,8 @@ class Outcome:
     seconds: float
     finding: Finding
     reason: str = ""
+    reference: str = ""
+    basis: str = ""
 
     @property
     def verdict(self) -> Literal["error", "failed", "passed"]:
@@ -231,13 +268,14 @@ class Check:
     """A check of the solver.
 
     name: the one in study files. source: of the independent values. check: runs the solver and the
-    independent solution, and compares them.
+    independent solution, and compares them. reference: the uncertainty of the latter.
     """
 
     name: str
     title: str
     source: str
     check: Callable[[], Finding]
+    reference: Reference = Reference()
 
     def run(self) -> Outcome:
         """Run the check. An exception becomes the reason of the outcome."""
@@ -252,12 +290,17 @@ class Check:
             file = Path(place.filename).name
             reason = f"{type(error).__name__}: {error} ({file}, line {place.lineno})"
             log.debug("the check %s ended in an error", self.name, exc_info=True)
-        return Outcome(self.name, self.title, self.source, perf_counter() - start, finding, reason)
+        comparisons = [self.reference.applied(entry) for entry in finding.comparisons]
+        finding, seconds = replace(finding, comparisons=comparisons), perf_counter() - start
+        kind, basis = self.reference.kind, self.reference.basis
+        return Outcome(self.name, self.title, self.source, seconds, finding, reason, kind, basis)
 
 
-def check(title: str, source: str) -> Callable[[Callable[[], Finding]], Check]:
+def check(
+    title: str, source: str, reference: Reference
+) -> Callable[[Callable[[], Finding]], Check]:
     """Return a decorator that makes a function the `Check` of its name."""
-    return lambda function: Check(function.__name__, title, source, function)
+    return lambda function: Check(function.__name__, title, source, function, reference)
 
 
 def gravest_first(outcomes: Iterable[Outcome]) -> list[Outcome]:

@@ -16,7 +16,15 @@ from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import run_dataset
 from impactlab.types import Floats
 from impactlab.verification.cases import elastic
-from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, check
+from impactlab.verification.finding import (
+    ROUNDING,
+    Comparisons,
+    Curve,
+    CurvePanel,
+    Finding,
+    Reference,
+    check,
+)
 from impactlab.verification.solutions import beam_modes, hertz
 from impactlab.verification.solutions.contact_laws import LAWS
 from impactlab.verification.solutions.modal import ModalSolution, solve_with
@@ -36,6 +44,7 @@ is that of chords between the nodes, which errs in the order of (dx/a)^2."""
 @check(
     "Contact compliance of beam and sphere",
     "modal series of Timoshenko's beam, the contact an implicit relation at the end of each step",
+    Reference("series", 1.5e-6, "what twice the modes and half the step change"),
 )
 def contact_compliance() -> Finding:
     """Compare force, duration and histories of an elastic impact, and the audit of its energy.
@@ -49,6 +58,7 @@ def contact_compliance() -> Finding:
     "Beam that bends across its width",
     "modal series of Timoshenko's beam and a strip of Kirchhoff's plate in three spectra, the "
     "contact an implicit relation at the end of each step",
+    Reference("series", 2e-5, "what twice the modes and half the step change"),
 )
 def strip() -> Finding:
     """Compare force, duration and histories of an elastic impact, and the audit of its energy.
@@ -127,6 +137,7 @@ def _series(impact: Impact) -> ModalSolution:
 @check(
     "Contact under the stress of bending",
     "the law and its unloading in closed form, solved by bisection along the run's own histories",
+    Reference("closed form", 4e-8, "tolerance of the bisection"),
 )
 def contact_prestress() -> Finding:
     """Compare the contact force with that of indentation and curvature, sample by sample.
@@ -195,6 +206,12 @@ def _prestressed(impact: Impact, run: xr.Dataset) -> Floats:
     "Load over the circle of contact",
     "modal series under Hertz's pressure, its share in each mode by a Hankel transform; integrals "
     "of motion and force",
+    Reference(
+        "series",
+        1.4e-5,
+        "what twice the modes and samples change",
+        {"ahead.*Timoshenko": 5e-2, "ahead": 3e-4, "curvature": 4e-4, "law's own": ROUNDING},
+    ),
 )
 def contact_patch() -> Finding:
     """Compare histories with those of modes under the solver's own force, spread by Hertz.

@@ -21,6 +21,8 @@ _CHECKS: Kinds = {
     "verdict": (str, "passed, failed, or error where the check came to no end"),
     "reason": (str, "the error that ended the check"),
     "seconds": (float, "time that the check took"),
+    "reference": (str, "kind of the independent values"),
+    "basis": (str, "what the uncertainty of the independent values is, and how it is known"),
 }
 _COMPARISONS: Kinds = {
     "check": (str, "check that the comparison belongs to"),
@@ -32,6 +34,7 @@ _COMPARISONS: Kinds = {
     "error": (float, "how far apart the two are, in the measure of `measure`"),
     "tolerance": (float, "largest error that passes, in the same measure"),
     "measure": (str, "what the error is relative to"),
+    "uncertainty": (float, "of the independent value, in the same measure; NaN: not known"),
     "passed": (bool, "whether the error is within the tolerance"),
 }
 _PANELS: Kinds = {
@@ -104,7 +107,7 @@ def unpacked(dataset: xr.Dataset) -> list[Outcome]:
     for (panel, label, independent, _), x, y in zip(curves, *parts, strict=False):
         lines[panel].append(Curve(label, x, y, independent))  # no curve: one empty part
     outcomes = []
-    for name, title, source, _, reason, seconds in _read(dataset, _CHECKS):
+    for name, title, source, _, reason, seconds, *reference in _read(dataset, _CHECKS):
         compared = [row for row in _read(dataset, _COMPARISONS) if row[0] == name]
         finding = Finding(
             [Comparison(*values) for _, *values, _ in compared],
@@ -114,11 +117,16 @@ def unpacked(dataset: xr.Dataset) -> list[Outcome]:
                 if check == name
             ],
         )
-        outcomes.append(Outcome(name, title, source, seconds, finding, reason))
+        outcomes.append(Outcome(name, title, source, seconds, finding, reason, *reference))
     return outcomes
 
 
 def _read(dataset: xr.Dataset, kinds: Kinds) -> list[tuple[Any, ...]]:
     """Return the rows of a table as plain Python values."""
-    columns = [dataset[name].values.astype(kind).tolist() for name, (kind, _) in kinds.items()]
+    size = dataset[next(iter(kinds))].size
+    lacking = {str: "", float: np.nan}  # of an earlier version
+    columns = [
+        dataset[name].values.astype(kind).tolist() if name in dataset else [lacking[kind]] * size
+        for name, (kind, _) in kinds.items()
+    ]
     return list(zip(*columns, strict=True))

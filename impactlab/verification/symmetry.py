@@ -24,11 +24,13 @@ from impactlab.types import Floats
 from impactlab.variables import HISTORIES, PROFILES, RESPONSES
 from impactlab.verification.cases import elastic, with_beam_material
 from impactlab.verification.finding import (
+    ROUNDING,
     Comparison,
     Comparisons,
     Curve,
     CurvePanel,
     Finding,
+    Reference,
     check,
     worst,
 )
@@ -94,7 +96,11 @@ def _yielding(contact: str) -> Impact:
     return with_beam_material(paper_impact(15.0, contact), **moduli)
 
 
-@check("Similarity and units", "Buckingham, Phys. Rev. 4 (1914) 345: on physically similar systems")
+@check(
+    "Similarity and units",
+    "Buckingham, Phys. Rev. 4 (1914) 345: on physically similar systems",
+    Reference("identity", ROUNDING, "rounding of the scales"),
+)
 def similarity() -> Finding:
     """Compare every response, history and profile of the scaled impact with the original.
 
@@ -240,6 +246,7 @@ _MARCHES = {
     "Time reversal",
     "Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section V.1: leapfrog of "
     "nodes or of modes, and an elastic law have no arrow of time",
+    Reference("identity", ROUNDING, "rounding"),
 )
 def time_reversal() -> Finding:
     """Compare forces there and, after all velocities are reversed, back; and the final state.

@@ -12,7 +12,15 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact, paper_impact
 from impactlab.simulate import run_dataset
 from impactlab.verification.cases import Sweep, elastic, rigid_backed
-from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, check
+from impactlab.verification.finding import (
+    CLOSED_FORM,
+    Comparisons,
+    Curve,
+    CurvePanel,
+    Finding,
+    Reference,
+    check,
+)
 from impactlab.verification.solutions import hertz, lumped, modal
 from impactlab.verification.solutions.contact_laws import LAWS, LawOnHalfSpace, law_on_half_space
 from impactlab.verification.solutions.hertz import HuntCrossleyImpact
@@ -24,7 +32,9 @@ _VELOCITY, _RESTITUTION = ("velocity", "m s-1"), ("coefficient of restitution", 
 
 
 @check(
-    "Impact on a half-space", "Hertz 1881; closed forms in impactlab.verification.solutions.hertz"
+    "Impact on a half-space",
+    "Hertz 1881; closed forms in impactlab.verification.solutions.hertz",
+    CLOSED_FORM,
 )
 def half_space() -> Finding:
     """Compare peak force, largest indentation, contact duration and restitution."""
@@ -75,6 +85,7 @@ _QUADRATURE = "quadrature of the law"
     "All contact laws on a half-space",
     "each law from its formulas, integrated by adaptive quadrature: "
     "impactlab.verification.solutions.contact_laws, which names the papers",
+    Reference("quadrature", 1e-10, "tolerances of quadrature and bisection"),
 )
 def contact_laws() -> Finding:
     """Compare restitution, peak force, dent and dissipation of each law at its worst velocity.
@@ -129,6 +140,7 @@ def _force_curves(run: xr.Dataset, law: LawOnHalfSpace, mass: float) -> list[Cur
 @check(
     "Viscous contact on a half-space",
     "Hunt and Crossley 1975; the first integral in impactlab.verification.solutions.hertz",
+    Reference("quadrature", 1e-10, "tolerances of quadrature and bisection"),
 )
 def viscous_contact() -> Finding:
     """Compare restitution, peak force, indentation and dissipation, and the order in time."""
@@ -184,6 +196,7 @@ CASES = {
     "Spring-mass model",
     "Rayleigh's mass 17/35 rho A L and stiffness 48 EI/L^3, DOP853 of scipy, in "
     "impactlab.verification.solutions.lumped",
+    Reference("quadrature", 4e-8, "what a tolerance of 1e-10 for 1e-12 changes"),
 )
 def spring_mass() -> Finding:
     """Compare histories, responses, the curvature, and the order in the time step."""
@@ -242,6 +255,7 @@ RIGID_TOLERANCE = 5e-6
     "Rigid beam",
     "Hertz 1881; Stronge, Impact Mechanics (2000), section 6.4; DOP853 of scipy, in "
     "impactlab.verification.solutions.hertz, .stronge and .lumped",
+    Reference("quadrature", 4e-8, "what a tolerance of 1e-10 for 1e-12 changes"),
 )
 def rigid_beam() -> Finding:
     """Compare Hertz's and Stronge's impact at four velocities, and a slow one under gravity."""

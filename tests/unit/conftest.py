@@ -21,6 +21,7 @@ from impactlab.solver.contact import LAWS
 from impactlab.solver.outputs import OUTSIDE_CONTACT_LAW
 from impactlab.variables import RESPONSES, described
 from impactlab.verification.finding import (
+    CLOSED_FORM,
     Comparison,
     Comparisons,
     Curve,
@@ -179,6 +180,7 @@ def outcomes():
     """A check that passed, one with curves that failed in part, an error, and one of nothing."""
     good = Comparisons("at 1 m/s").relative("peak force", "N", 21064.7892, 21064.7221, 1e-4)
     good.absolute("deflection", "m", 1.2003e-3, 1.2e-3, 2e-6)
+    good[:] = map(CLOSED_FORM.applied, good)
     good += [Comparison("curvature", "at 1 m/s", "m-1", 0.03, 0.031, 0.032, 0.1, "of the peak")]
     values = {f"case {i}": 100.0 + 0.01 * i for i in range(15)}
     values |= {"slightly off": 102.0, "far off": 300.0, "diverged": np.nan}
@@ -203,7 +205,15 @@ def outcomes():
         ),
     ]
     return [
-        Outcome("good", "A good check", "Hertz 1881", 0.25, Finding(good)),
+        Outcome(
+            "good",
+            "A good check",
+            "Hertz 1881",
+            0.25,
+            Finding(good),
+            reference="closed form",
+            basis="rounding",
+        ),
         Outcome("bad", "A bad check", "a series & more", 1.5, Finding(bad, panels)),
         Outcome("broken", "A broken check", "a book", 0.5, Finding(()), "ValueError: <no> (a.py)"),
         Outcome("void", "A check of nothing", "nowhere", 0.0, Finding(())),

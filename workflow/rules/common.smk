@@ -108,8 +108,8 @@ def solving(wildcards):
 
 
 def parts(wildcards):
-    """Return what tells that the parts of a study are solved; a growing sample has none."""
-    total = 0 if has(wildcards.study, "growing") else PARTS
+    """Return what tells that the parts of a study are solved; a growing sample or table has none."""
+    total = 0 if has(wildcards.study, "growing", "table") else PARTS
     return [f"results/{wildcards.study}/parts/{part}-of-{total}" for part in range(1, total + 1)]
 
 

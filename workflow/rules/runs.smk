@@ -7,6 +7,7 @@ rule runs:
     input:
         code=solving,
         study="studies/{study}.yaml",
+        table=lambda wildcards: DESCRIBED.get(wildcards.study, {}).get("table", []),
         parts=parts,  # which it takes over
     output:
         "results/{study}/runs.nc",

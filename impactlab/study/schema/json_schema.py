@@ -14,6 +14,7 @@ from impactlab.methods.grid import Grid, Range
 from impactlab.model.parameters import PARAMETERS, Parameter
 from impactlab.study.schema.declarations import DISCRETISATION, IMPACT, StudyFile
 from impactlab.study.schema.readers import FunctionFile, verification_file
+from impactlab.study.schema.table_file import Column, TableFile
 from impactlab.validation.fields import value_type
 from impactlab.variables import RESPONSES
 from impactlab.verification.functions import FUNCTIONS
@@ -46,11 +47,19 @@ def study_schema() -> Schema:
         "sampling": _sampling("number"),
         "limits": _open(_QUANTITY),
     }
+    table = _object(TableFile)
+    plain = [{"type": "null"}, {"type": "string"}]  # no unit, or the unit alone
+    drawn: Schema = {"$ref": "#/$defs/drawn_column"}
+    table["properties"] |= {
+        "inputs": _open({"anyOf": [*plain, _object(Column), drawn]}),
+        "outputs": _open({"anyOf": [*plain, _object(Column)]}),
+    }
     definitions = {
         "listed_number": _grid_entry(number),
         "drawn_number": _sample_entry(number),
         "listed_parameters": _closed(entries["listed"]),
         "drawn_parameters": _closed(entries["drawn"]),
+        "drawn_column": _distributions([*DISTRIBUTIONS, CHOICE], _QUANTITY, _object(Column)),
     }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -58,7 +67,11 @@ def study_schema() -> Schema:
         "type": "object",
         "if": {"required": ["checks"]},
         "then": _object(verification_file()),
-        "else": {"if": {"required": ["function"]}, "then": function, "else": impacts},
+        "else": {
+            "if": {"required": ["table"]},
+            "then": table,
+            "else": {"if": {"required": ["function"]}, "then": function, "else": impacts},
+        },
         "$defs": definitions,
     }
 
@@ -96,12 +109,16 @@ def _grid_entry(parameter: Parameter) -> Schema:
 
 def _sample_entry(parameter: Parameter) -> Schema:
     """Return the schema of a parameter in a sample: a distribution, words, or a fixed value."""
-    value = _value(parameter)
     names: list[str] = ["fixed"]
     if parameter.choices:
         names += [CHOICE]
     else:
         names += [Integers.name()] if parameter.is_integer else DISTRIBUTIONS
+    return _distributions(names, _value(parameter))
+
+
+def _distributions(names: list[str], value: Schema, beside: Schema | None = None) -> Schema:
+    """Return the schema of an entry of one of these names; beside: a section with further keys."""
     branches = []
     for name in names:
         section = _object(ENTRIES[name])
@@ -111,6 +128,7 @@ def _sample_entry(parameter: Parameter) -> Schema:
             elif not entry.keys() & {"type", "anyOf", "enum"}:
                 section["properties"][key] = value
         section["properties"]["distribution"] = {"const": name}
+        section["properties"] |= beside["properties"] if beside else {}
         section["required"] = ["distribution", *section.get("required", [])]
         branches.append({"if": {"properties": {"distribution": {"const": name}}}, "then": section})
     return {

@@ -24,6 +24,7 @@ from impactlab.study.schema.declarations import (
     StudyFile,
     Verification,
 )
+from impactlab.study.schema.table_file import TableStudy, table_study
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source, text_of
 from impactlab.validation.errors import Problem, StudyError, unknown
 from impactlab.validation.fields import Heading, Names, names, validated
@@ -31,8 +32,10 @@ from impactlab.variables import FLAGS, RESPONSES, VARIABLES
 from impactlab.verification.functions import FUNCTIONS
 
 
-def read_any(path: str | Path) -> AnyStudy | Verification:
+def read_any(path: str | Path) -> AnyStudy | TableStudy | Verification:
     """Read a YAML file: a verification if it has the key `checks`, else a study of runs.
+
+    One with the key `table` has its runs already.
 
     docs/studies.md describes all kinds of files. Raises StudyError with every problem of the file,
     one line each with file, key and value; with the first problem alone where the file is missing,
@@ -43,8 +46,14 @@ def read_any(path: str | Path) -> AnyStudy | Verification:
 
 
 def read_study(path: str | Path) -> AnyStudy:
-    """Read a study of runs. Raises StudyError as `read_any`, and for a file of checks."""
+    """Read a study of runs. Raises StudyError as `read_any`, and for a file of any other kind."""
     return _of_runs(read_source(path))
+
+
+def read_runs(path: str | Path) -> AnyStudy | TableStudy:
+    """Read a study of runs or of a table. Raises StudyError as `read_any`, and for checks."""
+    study = read_any(path)
+    return read_study(path) if isinstance(study, Verification) else study
 
 
 def read_impacts(path: str | Path) -> ImpactStudy:
@@ -75,6 +84,8 @@ def _of_runs(source: Source) -> AnyStudy:
     declared = _READERS[_kind(source)](source)
     if isinstance(declared, Verification):
         raise _wrong_kind(source.path, "lists checks and has no runs", "verify")
+    if isinstance(declared, TableStudy):
+        raise _wrong_kind(source.path, "has the rows of a table for runs", "go")
     return declared
 
 
@@ -89,10 +100,11 @@ def read_verification(path: str | Path) -> Verification:
 def describe(path: Path) -> dict[str, Any]:
     """Return name, title, size (runs or checks) and traits of a study file, for JSON.
 
-    traits: "checks" (a verification), "auto" (its discretisation is to be found), "sample" (its
-    impacts are drawn), "sobol" (by Sobol's sequence), "growing" (until its intervals are narrow),
-    and those of the wings' models that some runs have. measurements: its files of them, if any. Of
-    a file that is wrong: name, no traits, and `error`.
+    traits: "checks" (a verification), "table" (runs made elsewhere, in the file `table`), "auto"
+    (its discretisation is to be found), "sample" (its impacts are drawn), "sobol" (by Sobol's
+    sequence), "growing" (until its intervals are narrow), and those of the wings' models that some
+    runs have. measurements: its files of them, if any. Of a file that is wrong: name, no traits,
+    and `error`.
     """
     try:
         study = read_any(path)
@@ -111,6 +123,8 @@ def describe(path: Path) -> dict[str, Any]:
         [model.trait for model in further_models(study)] if isinstance(study, ImpactStudy) else []
     )
     summary = {"name": study.name, "title": study.title, "size": study.size, "traits": listed}
+    if isinstance(study, TableStudy):
+        return summary | {"traits": ["table"], "table": str(study.csv)}
     measured = list(getattr(study, "measurements", ()))
     return summary | ({"measurements": measured} if measured else {})
 
@@ -282,8 +296,9 @@ def _verification(source: Source) -> Verification:
     return Verification(name=source.name, path=source.path, text=source.text, **values)
 
 
-_READERS: dict[str, Callable[[Source], AnyStudy | Verification]] = {
+_READERS: dict[str, Callable[[Source], AnyStudy | TableStudy | Verification]] = {
     "checks": _verification,
+    "table": table_study,
     "function": _function_study,
     "": _study,
 }

@@ -168,7 +168,7 @@ SOLVER = Solver(
     columns=columns,
     failures=lambda design: status_bits(listed(design, "responses")),
     cases=cases,
-    cost=lambda cases: work(cases) + ANY_RUN,  # in node-steps of the paper's beam
+    cost=lambda cases: work(cases) + ANY_RUN,  # A_SECOND are a second
     values=values,
     solve=lambda cases, form: solve(
         cases,

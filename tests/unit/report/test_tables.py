@@ -12,6 +12,7 @@ import xarray as xr
 from samples import indices, sample
 
 import impactlab as il
+from impactlab.cli import results
 from impactlab.report import tables
 from impactlab.report.tables import export, table
 from impactlab.verification.finding import Comparison, Finding, Outcome
@@ -104,8 +105,10 @@ def test_names_and_kinds_that_do_not_exist(tmp_path, monkeypatch):
         table(RUNS, ["peak_forc"])
     with pytest.raises(ValueError, match="no sensitivity indices"):
         table(ANALYSIS[["numerical_uncertainty"]])
-    with pytest.raises(ValueError, match=r"--to = 'doc': unknown format; .*csv, xlsx"):
+    with pytest.raises(ValueError, match=r"^to = 'doc': unknown format; .*csv, xlsx"):
         export(RUNS, ANALYSIS, tmp_path, "doc")
+    with pytest.raises(ValueError, match=r"^--to = 'doc': unknown format; .*csv, xlsx"):
+        results.export("made_up", to="doc")
     monkeypatch.setattr(tables, "find_spec", lambda package: None)
     with pytest.raises(OSError, match=r"needs openpyxl: pip install 'impactlab\[tables\]'"):
         export(RUNS, ANALYSIS, tmp_path, "xlsx")

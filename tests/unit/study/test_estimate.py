@@ -102,9 +102,9 @@ def measured(runs, nodes, points, duration, store=""):
     ],
     ids=["million", "medium", "long", "cheap", "few", "histories", "function"],
 )
-def test_the_estimate_is_within_a_factor_of_3_of_measured_processor_times(text, seconds):
+def test_the_estimate_is_within_a_factor_of_2_of_measured_processor_times(text, seconds):
     """The first three are those of docs/scaling.md; all but the time to load the program."""
-    assert seconds / 3 < estimate(study_of_text("some", text), NOWHERE, 1).wall(1) < 3 * seconds
+    assert seconds / 2 < estimate(study_of_text("some", text), NOWHERE, 1).wall(1) < 2 * seconds
 
 
 def test_a_cost_sample_represents_all_runs(monkeypatch):
@@ -152,10 +152,10 @@ def test_memory_and_disk_are_those_of_the_answers():
         (grid({"velocity": [1.0]}, nodes=10_000_001), "discretisation.nodes"),
         (grid({"nodes": [11, 1_000_001]}), "sampling.parameters.nodes"),
         (grid({"velocity": [1.0]}, duration="100 years"), "duration"),
-        (grid({"sphere_mass": [1e-17]}, duration="100 s"), "sampling.parameters.sphere_mass"),
+        (grid({"sphere_mass": [1e-18]}, duration="150 s"), "sampling.parameters.sphere_mass"),
         (grid({"courant": [1e-12]}), "sampling.parameters.courant"),
         (
-            grid({"beam_span": [1e-6], "beam_depth": [1e-7]}, duration="1 s"),
+            grid({"beam_span": [1e-6], "beam_depth": [1e-7]}, duration="10 s"),
             "sampling.parameters.beam_span",
         ),
     ],

@@ -1,4 +1,4 @@
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 
@@ -39,9 +39,18 @@ def test_comparisons_are_a_labelled_table(outcomes, tmp_path):
     )
     assert (row.units.item(), row.measure.item(), row.passed.item()) == ("m", "absolute", True)
     assert row.ours.item() == 1.2003e-3
+    assert stored["uncertainty"].values[:2].tolist() == [1e-14, 0.0]
+    assert stored["reference"].sel(name="good").item() == "closed form"
     assert int((~stored.passed).sum()) == 3
     assert stored.verdict.sel(name="broken").item() == "error"
     assert all("long_name" in stored[name].attrs for name in stored.data_vars)
+
+
+def test_findings_of_an_earlier_version_have_unknown_uncertainties(outcomes):
+    older = packed(outcomes).drop_vars(["uncertainty", "reference", "basis"])
+    first = unpacked(older)[0]
+    assert (first.reference, first.basis) == ("", "")
+    assert np.isnan(first.finding.comparisons[0].uncertainty)
 
 
 def tidy(outcome):
@@ -52,6 +61,4 @@ def tidy(outcome):
         for panel in finding.panels
     ]
     tidied = type(finding)(list(finding.comparisons), panels)
-    return type(outcome)(
-        outcome.name, outcome.title, outcome.source, outcome.seconds, tidied, outcome.reason
-    )
+    return replace(outcome, finding=tidied)

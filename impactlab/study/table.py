@@ -22,6 +22,14 @@ _LARGEST_TIE = 0.05  # share of the runs with one value, from which on classes w
 _TAKEN = ("run", "row", "status", "response", "parameter")  # names of the dataset's own
 _UNLIKELY = 4.0  # standard errors of a rank correlation that chance does not make
 
+GIVEN_DATA = tuple(
+    record.name
+    for kind in SAMPLES.values()
+    if issubclass(kind, Hypercube)
+    for record in kind.records
+    if not record.of_limits
+)
+"""Names of the indices that a table can have."""
 Table = Mapping[str, Any]
 """Columns by name: a mapping, a pandas DataFrame or an xarray Dataset."""
 
@@ -103,19 +111,14 @@ def runs_of_table(
 
 
 def _records(indices: str | Sequence[str]) -> list[Indices]:
-    choices = [
-        record.name
-        for kind in SAMPLES.values()
-        if issubclass(kind, Hypercube)
-        for record in kind.records
-        if not record.of_limits
-    ]
     names = [indices] if isinstance(indices, str) else list(indices)
     if not names:
-        raise ValueError(f"indices is empty: choose from {', '.join(choices)}")
+        raise ValueError(f"indices is empty: choose from {', '.join(GIVEN_DATA)}")
     for name in names:
-        if name not in choices:
-            raise ValueError(f"indices: {name!r} {unknown('index of given data', name, choices)}")
+        if name not in GIVEN_DATA:
+            raise ValueError(
+                f"indices: {name!r} {unknown('index of given data', name, GIVEN_DATA)}"
+            )
         if names.count(name) > 1:
             raise ValueError(f"indices names {name} more than once: name it once")
     return [INDICES[name] for name in names]
