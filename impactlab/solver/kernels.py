@@ -128,9 +128,9 @@ def _rest(model: BeamModel) -> Callable[..., int]:
     return rest
 
 
-def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
-    """Return a function that solves a case; extended: see _kernel."""
-    march, rest, lift = time_loop(model, extended), _rest(model), model.lift
+def _run(model: BeamModel, extended: bool, rest: Callable[..., int]) -> Callable[..., int]:
+    """Return a function that solves a case; rest: as _rest returns it, extended: see _kernel."""
+    march, lift = time_loop(model, extended), model.lift
     largest_deflection = None if model.flight is None else model.flight.largest
 
     @inlined
@@ -217,7 +217,8 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     make, renew, take, deflect = model.make, model.renew, model.take, model.deflect
     join, read = (None, None) if model.further is None else model.further[:2]
     divide = _division(join is not None)
-    run = _run(model, extended)
+    rest = _rest(model)
+    run = _run(model, extended, rest)
     of_fibres = make_room, _section_at_rate if extended else cut_section
     make_section_room, cut = model.section or of_fibres
 
@@ -272,6 +273,8 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
                 if deflection.shape[1] > 0:
                     deflect(state, now)
                 _keep_profiles(state, now, r, deflection, plastic_strain, peeq)
+                if case.strikes == 1 and series.shape[1] > 0:  # at the end of the run till here
+                    rest(case, contacts[r], events[r], series[r], state, 0, now)
 
     kernel.__qualname__ = name
     return allocating(kernel)
