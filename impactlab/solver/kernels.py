@@ -128,6 +128,19 @@ def _rest(model: BeamModel) -> Callable[..., int]:
     return rest
 
 
+def _rest_single(rest: Callable[..., int]) -> Callable[..., None]:
+    """Return a function that puts a beam to rest after its only strike, where that is kept."""
+
+    @compiled
+    def rest_single(
+        case: Record, contact: Record, events: Record, series: Array, state: State, now: int
+    ) -> None:
+        if case.strikes == 1 and series.shape[0] > 0:
+            rest(case, contact, events, series, state, 0, now)
+
+    return rest_single
+
+
 def _run(model: BeamModel, extended: bool, rest: Callable[..., int]) -> Callable[..., int]:
     """Return a function that solves a case; rest: as _rest returns it, extended: see _kernel."""
     march, lift = time_loop(model, extended), model.lift
@@ -218,7 +231,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     join, read = (None, None) if model.further is None else model.further[:2]
     divide = _division(join is not None)
     rest = _rest(model)
-    run = _run(model, extended, rest)
+    run, rest_single = _run(model, extended, rest), _rest_single(rest)
     of_fibres = make_room, _section_at_rate if extended else cut_section
     make_section_room, cut = model.section or of_fibres
 
@@ -273,8 +286,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
                 if deflection.shape[1] > 0:
                     deflect(state, now)
                 _keep_profiles(state, now, r, deflection, plastic_strain, peeq)
-                if case.strikes == 1 and series.shape[1] > 0:  # at the end of the run till here
-                    rest(case, contacts[r], events[r], series[r], state, 0, now)
+                rest_single(case, contacts[r], events[r], series[r], state, now)
 
     kernel.__qualname__ = name
     return allocating(kernel)

@@ -14,8 +14,8 @@ import numpy as np
 
 from impactlab.solver.types import Array
 
-# The bits of `status` (in words: impactlab.variables.STATUS_FLAGS) say why an answer is missing, but
-# for one, which leaves every answer and marks them.
+# The bits of `status` (in words: impactlab.variables.STATUS_FLAGS). They say why an answer is
+# missing, except OUTSIDE_CONTACT_LAW, which leaves every answer and marks them.
 DIVERGED = 1
 FIRST_CONTACT_UNFINISHED = 2
 IN_CONTACT_AT_END = 4

@@ -44,7 +44,6 @@ from impactlab.validation.fields import (
 from impactlab.validation.refusals import Base, refusal
 from impactlab.variables import RESPONSES
 
-
 _RESPONSES = names("response", RESPONSES, GROWING)
 
 

@@ -74,7 +74,7 @@ GROWTH = ("steady_strike", "shakedown_strike")
 
 def test_strikes_without_growth_are_responses_of_a_grid(strikes, tmp_path):
     """Their values are those of a study that does not list them, and `status` explains gaps."""
-    runs, study = strikes
+    runs, _ = strikes
     listed = il.Study(
         title="Growth",
         impact=IMPACT,
