@@ -151,6 +151,11 @@ WARNINGS: dict[str, tuple[int, str]] = {
         outputs.NOT_STEADY,
         f"{FAILURES['not_steady'][1]}: `steady_strike` is missing",
     ),
+    "second_rest": (
+        outputs.SECOND_REST,
+        "with its plastic strains held, the beam has a second stable shape at rest, bowed the "
+        "other way: it is put to rest in that of least energy, and a swing through is not followed",
+    ),
     "skin_may_give": (
         outputs.SKIN_MAY_GIVE,
         "the contact radius is above a fifth of the outer layer's thickness, and the contact law "

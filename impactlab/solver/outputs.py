@@ -46,7 +46,8 @@ STRETCHING_LEFT_OUT = 2048
 # Runs with several strikes of which the last one still leaves more; bits of `status`, too.
 NO_SHAKEDOWN = 8192
 NOT_STEADY = 16384
-
+# A beam whose plastic strains let it rest in a second shape, too.
+SECOND_REST = 32768
 
 SHORT_PAUSE = 0.05
 """Pauses shorter than this share of the first contact until then do not end it."""
