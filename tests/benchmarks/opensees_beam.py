@@ -3,7 +3,8 @@
 Half the beam, or all of it where struck beside its middle: displacement-based elements with cubic
 shape functions and lumped mass, corotational where the axis is held, three Lobatto sections each,
 elastic-perfectly plastic, of the same fibres as ours (a rectangle), or of layers of each flange and
-of the web (an I-section, a box); elastic ends on springs between two nodes; Newmark's average acceleration with Newton's iterations.
+of the web (an I-section, a box); elastic ends on springs to fixed nodes; Newmark's average
+acceleration with Newton's iterations.
 Source: F. McKenna, Comput. Sci. Eng. 13 (2011) 58.
 """
 

@@ -10,20 +10,30 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize
+from scipy.special import ellipk
 
 import impactlab as il
 from impactlab.model.case_table import case_table
+from impactlab.model.section import fibre_table
 from impactlab.simulate import run_dataset
-from impactlab.solver.beam import CLAMPED, PINNED, make_grid
+from impactlab.solver.beam import CLAMPED, PINNED, make_beam, make_grid
+from impactlab.solver.contact.history import make_pair
+from impactlab.solver.fibre_plasticity import make_plastic_state
+from impactlab.solver.jit import compiled
 from impactlab.solver.outputs import SECOND_REST, STRETCHING_LEFT_OUT
 from impactlab.solver.responses import stretching
-from impactlab.solver.settle_stretch import has_second_rest
+from impactlab.solver.section import cut_whole_section, make_whole_room
+from impactlab.solver.settle_stretch import has_second_rest, static_axis
+from impactlab.solver.stability import discretise
+from impactlab.solver.state import State
+from impactlab.solver.von_karman import MODEL
 from impactlab.verification.cases import elastic, with_beam_material
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::impactlab.TooShortWarning", "ignore::impactlab.ImplausibleWarning"
 )
 
+STEP = MODEL.step
 PAPER = il.paper_impact(20.0)
 GRID = il.Discretisation(nodes=81, points=9)
 
@@ -251,6 +261,73 @@ def test_yielding_beam_is_that_of_opensees(left, right, place):
     assert np.abs(fine / coarse - 1.0).max() < 0.03
     assert run.midspan_deflection.max() == pytest.approx(deflection, rel=0.01)
     assert run.plastic_dissipation == pytest.approx(dissipation, rel=0.02)
+
+
+@compiled
+def vibrate(state, mid):
+    """Fill `mid` with the deflection of the struck node, a step apart (m)."""
+    now = 0
+    for step in range(mid.size):
+        mid[step] = state.beam.w[now, state.grid.mid]
+        STEP(state, now, 0.0)
+        now = 1 - now
+
+
+def free_vibration(impact, n, amplitude, N, duration):
+    """Return times (s) and deflection of mid-span (m), from rest in n half-waves under N (N)."""
+    cases = case_table(impact, il.Discretisation(nodes=65), duration=duration)
+    case, pair = cases[0], make_pair(cases[0])
+    section = cut_whole_section(case, fibre_table(cases)[0], make_whole_room(case))
+    grid, steps = discretise(case, pair, section)
+    beam, plastic = make_beam(grid), make_plastic_state(grid, section)
+    stretch = MODEL.make(case, section, grid)
+    k, EA = n * np.pi / case.beam_span, stretch.stiffness
+    beam.w[:] = amplitude * np.sin(k * grid.dx * (np.arange(grid.last + 3) - grid.first + 1))
+    stretch.N_0[:] = N
+    pull = N + 0.25 * EA * (k * amplitude) ** 2
+    static_axis(stretch.u, beam.w[0], pull, stretch.N_0, EA, stretch.held, grid)
+    mid = np.empty(steps)
+    vibrate(State(pair, section, grid, beam, plastic, stretch), mid)
+    return grid.dt * np.arange(steps), mid
+
+
+def half_periods(times, w):
+    """Return the times (s) at which w crosses zero, by interpolation."""
+    at = np.flatnonzero(w[1:] * w[:-1] < 0.0)
+    return times[at] + (times[1] - times[0]) * w[at] / (w[at] - w[at + 1])
+
+
+@pytest.mark.parametrize(("n", "pull"), [(1, 0.0), (1, 3.0), (1, -0.5), (3, 0.0), (3, 3.0)])
+@pytest.mark.parametrize("amplitude", [1e-3, 1.0, 3.0])
+def test_free_vibrations_have_woinowsky_kriegers_period(amplitude, pull, n):
+    """T = 4 K(m)/sqrt(k^2 (EI k^2 + N)/mu + g), of the elliptic integral with m = g/2 over that.
+
+    g = EA k^4 A^2/(4 mu). amplitude: A over the radius of gyration. pull: N over EI k^2.
+    """
+    impact = held(elastic(PAPER), depth=0.006)
+    beam, k = impact.beam, n * np.pi / impact.beam.span
+    EI, mu = beam.bending_stiffness, beam.mass_per_length
+    N, r = pull * EI * k**2, beam.depth / np.sqrt(12.0)
+    hardening = 0.25 * EI * k**4 * amplitude**2 / mu
+    square = (EI * k**2 + N) * k**2 / mu + hardening
+    expected = 4.0 * ellipk(0.5 * hardening / square) / np.sqrt(square)
+    times, w = free_vibration(impact, n, amplitude * r, N, 3.3 * expected)
+    assert 2.0 * np.diff(half_periods(times, w)) == pytest.approx(expected, rel=2e-3)
+
+
+def test_a_pulled_beams_vibrations_decay_by_the_bending_alone():
+    """decay = (alpha + beta EI k^4/mu)/2: the axial force stores energy without strain rate."""
+    impact = held(elastic(PAPER), depth=0.006, mass_damping=20.0, stiffness_damping=2e-4)
+    beam, k = impact.beam, np.pi / impact.beam.span
+    bent = beam.bending_stiffness * k**4 / beam.mass_per_length
+    decay, N = 0.5 * (20.0 + 2e-4 * bent), 3.0 * beam.bending_stiffness * k**2
+    turn = np.sqrt(4.0 * bent - decay**2)
+    times, w = free_vibration(impact, 1, 1e-6, N, 5.0 * 2.0 * np.pi / turn)
+    crossings = half_periods(times, w)
+    assert np.pi / np.diff(crossings) == pytest.approx(turn, rel=2e-3)
+    spans = itertools.pairwise(crossings)
+    peaks = [np.abs(w[(times > start) & (times < end)]).max() for start, end in spans]
+    assert -np.diff(np.log(peaks)) / np.diff(crossings[1:]) == pytest.approx(decay, rel=5e-3)
 
 
 # rise over the radius of gyration from which a bowed beam without a load rests bowed the other way,
