@@ -12,7 +12,7 @@ from impactlab import wings
 from impactlab.law_texts import describe_laws
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver import outputs
-from impactlab.solver.outputs import GROWING, NO_GROWTH
+from impactlab.solver.outputs import GROWING, NO_GROWTH, STILL_GROWING
 from impactlab.solver.outputs import SHORT_PAUSE as SHORT_PAUSE
 
 if TYPE_CHECKING:
@@ -54,6 +54,16 @@ FAILURES: dict[str, tuple[int, str]] = {
         _STOPPED,
         "the 3-D model stopped before its time, or had no room for its contact (see the log); "
         "every response is missing",
+    ),
+    "no_shakedown": (
+        outputs.NO_SHAKEDOWN,
+        "the last strike still makes the dent or the dissipation in the fibres grow, or its sphere "
+        "does not leave",
+    ),
+    "not_steady": (
+        outputs.NOT_STEADY,
+        "the last strike still makes the dent or the residual deflection grow, or its sphere "
+        "does not leave",
     ),
 }
 """Reasons for a missing response, by name: (bit in `status`, in words)."""
@@ -134,13 +144,16 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "no_shakedown": (
         outputs.NO_SHAKEDOWN,
-        "the last strike still makes the dent or the dissipation in the fibres grow, or its sphere "
-        "does not leave: `shakedown_strike` is missing",
+        f"{FAILURES['no_shakedown'][1]}: `shakedown_strike` is missing",
     ),
     "not_steady": (
         outputs.NOT_STEADY,
-        "the last strike still makes the dent or the residual deflection grow, or its sphere "
-        "does not leave: `steady_strike` is missing",
+        f"{FAILURES['not_steady'][1]}: `steady_strike` is missing",
+    ),
+    "second_rest": (
+        outputs.SECOND_REST,
+        "with its plastic strains held, the beam has a second stable shape at rest, bowed the "
+        "other way: it is put to rest in that of least energy, and a swing through is not followed",
     ),
     "skin_may_give": (
         outputs.SKIN_MAY_GIVE,
@@ -250,16 +263,21 @@ _WITHOUT_GROWTH = _table(
             (),
             "1",
             f"strike from which on {what} do not grow",
-            comment=f"from it on, either changes by at most {NO_GROWTH:.1%} of itself per strike; "
-            "NaN: the last strike still changes it by more, as `remarks` says, or the run failed",
+            missing,
+            f"from it on, either changes by at most {NO_GROWTH:.1%} of itself per strike; "
+            "NaN: the last strike still changes it by more, as `remarks` says (`status`, where the "
+            "study lists it among its responses), or the run failed",
         )
-        for name, what in zip(
+        for name, what, missing in zip(
             GROWING,
             ("dent and residual deflection", "dent and dissipation in the fibres"),
+            ("not_steady", "no_shakedown"),
             strict=True,
         )
     )
 )
+SCALARS = RESPONSES | _WITHOUT_GROWTH
+"""The responses that a study may list, by name: those of every run, and of several strikes."""
 OF_STRIKES = _WITHOUT_GROWTH | BY_STRIKE
 """Answers of runs with several strikes, by name."""
 COORDINATES = _table(
@@ -345,7 +363,7 @@ def status_bits(responses: Iterable[str]) -> int:
     bits = outputs.DIVERGED | outputs.ENERGY_OUT_OF_BALANCE | _STOPPED
     bits |= outputs.EARLIER_STRIKE_UNFINISHED
     for name in responses:
-        if name in RESPONSES and (reason := RESPONSES[name].missing):
+        if name in SCALARS and (reason := SCALARS[name].missing):
             bits |= STATUS_FLAGS[reason][0]
     return bits
 
@@ -356,7 +374,7 @@ def answer_variables(
     """Return the answers as data variables on `dims` (for one run: none), only these responses.
 
     answers: arrays of numpy or dask, by name. `status` keeps the bits that matter to these
-    responses; `remarks` are of the run as a whole.
+    responses; `remarks` are of the run as a whole, without what `status` says.
     """
     lead = dims or ("run",)
     bits = (answers["status"] & (status_bits(responses) | MARKED)).astype(np.int32)
@@ -366,7 +384,7 @@ def answer_variables(
         for name, entry in (HISTORIES | PROFILES | FIELDS | OF_STRIKES | BY_SPHERE).items()
         if name in answers
     }
-    remarks = answers["remarks"].astype(np.int32)
+    remarks = (answers["remarks"] & ~(bits & STILL_GROWING)).astype(np.int32)
     return scalars | fields | {"status": (lead, bits), "remarks": (lead, remarks)}
 
 

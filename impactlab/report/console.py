@@ -15,7 +15,7 @@ from rich.table import Column, Table
 
 from impactlab.model.parameters import PARAMETERS
 from impactlab.model.quantities import engineering, time
-from impactlab.variables import FAILED, FLAGS, RESPONSES
+from impactlab.variables import FAILED, FLAGS, RESPONSES, SCALARS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -264,7 +264,7 @@ def sentences(runs: Any) -> Iterator[str]:
     remarks = np.asarray(runs["remarks"]) if "remarks" in runs else np.zeros(1, int)
     for flag, (bit, reason) in FAILURES.items():
         if number := int(((status & bit) != 0).sum()):
-            names = [name for name, entry in RESPONSES.items() if entry.missing == flag]
+            names = [name for name, entry in SCALARS.items() if entry.missing == flag]
             names = [name for name in names if name in runs]
             missing = f"missing because {reason}: {', '.join(names)}"
             yield _sentence(number, status.size, missing if names else reason)

@@ -19,6 +19,7 @@ from impactlab.solver import (
     kink,
     lumped,
     modal,
+    outputs,
     resistance,
     resisted_modes,
     responses,
@@ -38,11 +39,6 @@ from impactlab.solver.fibre_plasticity import (
 )
 from impactlab.solver.jit import allocating, compiled, inlined
 from impactlab.solver.leapfrog import time_loop
-from impactlab.solver.outputs import (
-    DIVERGED,
-    EARLIER_STRIKE_UNFINISHED,
-    ENERGY_OUT_OF_BALANCE,
-)
 from impactlab.solver.section import FibreSection, Room, cut_section, make_room, with_rate
 from impactlab.solver.several_spheres import with_spheres
 from impactlab.solver.stability import discretise, grid_of, struck_node
@@ -92,11 +88,12 @@ def _keep_profiles(
 
 def _rest(model: BeamModel) -> Callable[..., int]:
     """Return a function that puts the beam to rest after a strike, unless it goes on moving."""
-    settle, lift = model.settle, model.lift
+    settle, lift, rests_twice = model.settle, model.lift, model.rests_twice
 
     @compiled
     def rest(
         case: Record,
+        answer: Record,
         contact: Record,
         events: Record,
         series: Array,
@@ -111,6 +108,8 @@ def _rest(model: BeamModel) -> Callable[..., int]:
         row, last = 1 - now, strike == case.strikes - 1
         if settle is not None and (last or case.strike_interval == 0.0):
             settle(state)
+            if rests_twice is not None and rests_twice(state):
+                answer.remarks |= outputs.SECOND_REST
             events.v_mid, row = 0.0, int(np.int64(0))
         elif responses.sphere_leaves(events):  # on as it was, beyond the kink
             kink.straighten(state.beam.w, state.grid, -contact.kink)
@@ -128,9 +127,22 @@ def _rest(model: BeamModel) -> Callable[..., int]:
     return rest
 
 
-def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
-    """Return a function that solves a case; extended: see _kernel."""
-    march, rest, lift = time_loop(model, extended), _rest(model), model.lift
+def _rest_single(rest: Callable[..., int]) -> Callable[..., None]:
+    """Return a function that puts a beam to rest after its only strike, where that is kept."""
+
+    @compiled
+    def rest_single(
+        case: Record, answer: Record, contact: Record, events: Record, series: Array, state: State
+    ) -> None:
+        if case.strikes == 1 and series.shape[0] > 0:
+            rest(case, answer, contact, events, series, state, 0, 0)
+
+    return rest_single
+
+
+def _run(model: BeamModel, extended: bool, rest: Callable[..., int]) -> Callable[..., int]:
+    """Return a function that solves a case; rest: as _rest returns it, extended: see _kernel."""
+    march, lift = time_loop(model, extended), model.lift
     largest_deflection = None if model.flight is None else model.flight.largest
 
     @inlined
@@ -148,7 +160,7 @@ def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
         now = int(np.int64(0))
         for strike in range(case.strikes):
             if strike > 0 and not responses.sphere_leaves(events):
-                answer.status = EARLIER_STRIKE_UNFINISHED
+                answer.status = outputs.EARLIER_STRIKE_UNFINISHED
                 return now
             interval = 0
             if case.strike_interval > 0.0 and strike < case.strikes - 1:
@@ -157,13 +169,13 @@ def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
             if largest_deflection is not None:
                 events.w_max = largest_deflection(state, events.w_max)
             if now < 0:
-                answer.status = DIVERGED
+                answer.status = outputs.DIVERGED
                 return now
             if case.strikes > 1:
-                now = rest(case, contact, events, series, state, strike, now)
+                now = rest(case, answer, contact, events, series, state, strike, now)
         answer.energy_error = events.energy_error
         if answer.energy_error > WORST_ENERGY_ERROR:
-            answer.status = ENERGY_OUT_OF_BALANCE
+            answer.status = outputs.ENERGY_OUT_OF_BALANCE
         else:
             pair, section, grid, plastic = state.pair, state.section, state.grid, state.plastic
             _, dissipated = plastic_energy(plastic, section, grid)
@@ -217,7 +229,8 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     make, renew, take, deflect = model.make, model.renew, model.take, model.deflect
     join, read = (None, None) if model.further is None else model.further[:2]
     divide = _division(join is not None)
-    run = _run(model, extended)
+    rest = _rest(model)
+    run, rest_single = _run(model, extended, rest), _rest_single(rest)
     of_fibres = make_room, _section_at_rate if extended else cut_section
     make_section_room, cut = model.section or of_fibres
 
@@ -272,6 +285,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
                 if deflection.shape[1] > 0:
                     deflect(state, now)
                 _keep_profiles(state, now, r, deflection, plastic_strain, peeq)
+                rest_single(case, answers[r], contacts[r], events[r], series[r], state)
 
     kernel.__qualname__ = name
     return allocating(kernel)

@@ -14,8 +14,8 @@ import numpy as np
 
 from impactlab.solver.types import Array
 
-# The bits of `status` (in words: impactlab.variables.STATUS_FLAGS). All but the last say why an
-# answer is missing; the last leaves every answer, and marks them.
+# The bits of `status` (in words: impactlab.variables.STATUS_FLAGS). They say why an answer is
+# missing, except OUTSIDE_CONTACT_LAW, which leaves every answer and marks them.
 DIVERGED = 1
 FIRST_CONTACT_UNFINISHED = 2
 IN_CONTACT_AT_END = 4
@@ -43,10 +43,11 @@ ROUND_TOP = 1024
 SKIN_MAY_GIVE = 4096
 # The axial force of ends that hold the axis, in other models than von_karman.
 STRETCHING_LEFT_OUT = 2048
-# Runs with several strikes of which the last one still leaves more.
+# Runs with several strikes of which the last one still leaves more; bits of `status`, too.
 NO_SHAKEDOWN = 8192
 NOT_STEADY = 16384
-
+# A beam whose plastic strains let it rest in a second shape, too.
+SECOND_REST = 32768
 
 SHORT_PAUSE = 0.05
 """Pauses shorter than this share of the first contact until then do not end it."""
@@ -173,7 +174,9 @@ GROWING = {
     "steady_strike": (("permanent_indentation", "residual_deflection"), NOT_STEADY),
     "shakedown_strike": (("permanent_indentation", "plastic_dissipation"), NO_SHAKEDOWN),
 }
-"""Strikes from which on quantities do not grow: which, and the bit of `remarks` without one."""
+"""Strikes from which on quantities do not grow: which, and the bit of both flags without one."""
+STILL_GROWING = NOT_STEADY | NO_SHAKEDOWN
+"""These bits."""
 _WHOLE_RUN = DIVERGED | ENERGY_OUT_OF_BALANCE | EARLIER_STRIKE_UNFINISHED
 """Bits of runs without any response."""
 _ROUND_OFF = 1e-12
@@ -181,26 +184,20 @@ _ROUND_OFF = 1e-12
 
 
 def by_strike(cases: Array, columns: dict[str, Array], series: Array) -> dict[str, Array]:
-    """Return the series by name, (R, strikes), GROWING, (R,), and the remarks with its bits.
+    """Return the series by name, (R, strikes), GROWING, (R,), and both flags with its bits.
 
-    cases: CASE records. columns: answers so far, (R,). series: (R, strikes, len(SERIES)), to which
-    those of single strikes are added: kernels do not put the beam to rest after these, and answers
-    have all but its deflection.
+    cases: CASE records. columns: answers so far, (R,). series: (R, strikes, len(SERIES)).
     """
     strikes = cases["strikes"]
-    rows = np.flatnonzero(strikes == 1)
-    for place, name in enumerate(SERIES):
-        if name in columns:
-            series[rows, 0, place] = columns[name][rows]
     values = dict(zip(SERIES, np.moveaxis(series, 2, 0), strict=True))
     answers = {f"{name}_over_strikes": value for name, value in values.items()}
-    lost, remarks = columns["status"] & _WHOLE_RUN != 0, columns["remarks"].copy()
+    lost, growing = columns["status"] & _WHOLE_RUN != 0, np.zeros_like(columns["status"])
     values["residual_deflection"] = _at_touch(cases, values["residual_deflection"])
     for name, (quantities, bit) in GROWING.items():
         first = first_without_growth(strikes, [values[quantity] for quantity in quantities])
         answers[name] = np.where(lost, np.nan, first)
-        remarks |= np.where(np.isnan(first) & ~lost, bit, 0)
-    return answers | {"remarks": remarks}
+        growing |= np.where(np.isnan(first) & ~lost, bit, 0)
+    return answers | {flags: columns[flags] | growing for flags in ("status", "remarks")}
 
 
 def _at_touch(cases: Array, deflection: Array) -> Array:

@@ -14,15 +14,19 @@ one root, and it has the least energy of all equilibria. (With W = max over N of
 in w there, W(any w) >= f(any w, N) >= f(w(N), N) = W(w(N)).) Bisection finds it; the pivots of the
 matrix, all positive or not, show on which side of the buckling load N lies.
 
-A beam that is bowed by more than about its depth has a second equilibrium, bowed the other way. A
-beam that swings through to that one while it comes to rest is not followed (P. S. Symonds and T. X.
-Yu, J. Appl. Mech. 52 (1985) 517, recalled).
+A beam that is bowed by more than about its depth has a second stable equilibrium, bowed the other
+way. A beam that swings through to that one while it comes to rest is not followed (P. S. Symonds
+and T. X. Yu, J. Appl. Mech. 52 (1985) 517, recalled), but remarked: below the buckling load the
+axial force adds g'(N) < 0 to the stiffness, which makes up for one negative pivot and no more. g is
+concave where there is one, so that its largest value tells whether such a root exists.
 """
 
 import math
 
 from impactlab.solver.beam import CLAMPED, PINNED, SPRUNG, SYMMETRIC, BeamGrid, is_end
 from impactlab.solver.jit import compiled
+from impactlab.solver.settle import rest_nodes
+from impactlab.solver.state import State
 from impactlab.solver.types import Array
 
 _HALVINGS = 200
@@ -32,8 +36,13 @@ _ABOVE_BUCKLING = 1.01
 
 
 @compiled
-def _assemble(bands: Array, M_0: Array, EI: float, N: float, bed: float, grid: BeamGrid) -> None:
-    """Set the rows of the equations: diagonal, next and second next to it, and the load."""
+def _assemble(
+    bands: Array, M_0: Array, EI: float, N: float, bed: float, grid: BeamGrid, right: int
+) -> None:
+    """Set the rows of the equations: diagonal, next and second next to it, and the load.
+
+    right: kind of the right end.
+    """
     diagonal, beside, beyond, load = bands[0], bands[1], bands[2], bands[3]
     dx, bend, pull = grid.dx, EI / grid.dx**3, N / grid.dx
     for i in range(diagonal.size):
@@ -54,7 +63,7 @@ def _assemble(bands: Array, M_0: Array, EI: float, N: float, bed: float, grid: B
         beside[i] -= pull
     for kind, end, inside, turn, lift in (
         (grid.left, grid.first - 1, grid.first, grid.turn_left, grid.lift_left),
-        (grid.right, grid.stop, grid.stop - 1, grid.turn_right, grid.lift_right),
+        (right, grid.stop, grid.stop - 1, grid.turn_right, grid.lift_right),
     ):
         diagonal[end] += 0.5 * dx * bed
         share = 1.0 if kind in (CLAMPED, SYMMETRIC) else 0.0
@@ -70,26 +79,52 @@ def _assemble(bands: Array, M_0: Array, EI: float, N: float, bed: float, grid: B
 
 
 @compiled
-def _solve(w: Array, bands: Array, grid: BeamGrid) -> bool:
-    """Set w (m), unless the matrix is not positive definite; return whether it is."""
-    pivot, beside, beyond, load = bands[0], bands[1], bands[2], bands[3]
+def _rows(grid: BeamGrid, right: int) -> tuple[int, int]:
+    """Return the first and the last row of nodes that move; right: kind of the right end."""
     low = grid.first if grid.left in (PINNED, CLAMPED) else grid.first - 1
-    high = grid.stop - 1 if grid.right in (PINNED, CLAMPED) else grid.stop
+    return low, grid.stop - 1 if right in (PINNED, CLAMPED) else grid.stop
+
+
+@compiled
+def _factor(bands: Array, rows: tuple[int, int], most: int) -> int:
+    """Factor the matrix and return its number of negative pivots, up to one more than `most`."""
+    pivot, beside, beyond = bands[0], bands[1], bands[2]
+    (low, high), negative = rows, 0
     beside[low - 1] = beyond[low - 1] = beyond[low - 2] = 0.0
     beside[high] = beyond[high] = beyond[high - 1] = 0.0
     for i in range(low, high + 1):
         before, twice = beside[i - 1], beyond[i - 2]
         pivot[i] -= before * before * pivot[i - 1] + twice * twice * pivot[i - 2]
         if pivot[i] <= 0.0:
-            return False
-        load[i] -= before * load[i - 1] + twice * load[i - 2]
+            negative += 1
+            if negative > most:
+                break
         beside[i] = (beside[i] - before * beyond[i - 1] * pivot[i - 1]) / pivot[i]
         beyond[i] /= pivot[i]
+    return negative
+
+
+@compiled
+def _substitute(w: Array, bands: Array, rows: tuple[int, int]) -> None:
+    """Set w (m), the solution for the load."""
+    pivot, beside, beyond, load = bands[0], bands[1], bands[2], bands[3]
+    low, high = rows
+    for i in range(low, high + 1):
+        load[i] -= beside[i - 1] * load[i - 1] + beyond[i - 2] * load[i - 2]
     for i in range(w.size):
         w[i] = 0.0
     for i in range(high, low - 1, -1):
         w[i] = load[i] / pivot[i] - beside[i] * w[i + 1] - beyond[i] * w[i + 2]
-    return True
+
+
+@compiled
+def _solve(w: Array, bands: Array, grid: BeamGrid) -> bool:
+    """Set w (m), unless the matrix is not positive definite; return whether it is."""
+    rows = _rows(grid, grid.right)
+    definite = _factor(bands, rows, 0) == 0
+    if definite:
+        _substitute(w, bands, rows)
+    return definite
 
 
 @compiled
@@ -99,6 +134,17 @@ def _arc(w: Array, grid: BeamGrid) -> float:
     for i in range(grid.first - 1, grid.stop):
         total += (w[i + 1] - w[i]) ** 2
     return 0.5 * total / grid.dx
+
+
+@compiled
+def _lengths(N_0: Array, EA: float, grid: BeamGrid) -> tuple[float, float]:
+    """Return by how much a force of 1 N lengthens the beam (m/N), and by how much N_0 does (m)."""
+    softness, longer = 0.0, 0.0
+    for i in range(grid.first - 1, grid.stop + 1):
+        share = (0.5 if is_end(grid, i) else 1.0) * grid.dx / EA
+        softness += share
+        longer -= share * N_0[i]
+    return softness, longer
 
 
 @compiled
@@ -127,15 +173,11 @@ def static_stretch(
     bands: room, (4, last + 3). M_0 (N m), N_0 (N): see von_karman.py. bed: stiffness of the
     foundation (N/m2). held: whether both ends hold the axis.
     """
-    _assemble(bands, M_0, EI, 0.0, bed, grid)
+    _assemble(bands, M_0, EI, 0.0, bed, grid, grid.right)
     _solve(w, bands, grid)
     if not held:
         return 0.0
-    softness, longer = 0.0, 0.0
-    for i in range(grid.first - 1, grid.stop + 1):
-        share = (0.5 if is_end(grid, i) else 1.0) * grid.dx / EA
-        softness += share
-        longer -= share * N_0[i]
+    softness, longer = _lengths(N_0, EA, grid)
     longest = _arc(w, grid)
     low, high = 0.0, (longest - longer) / softness
     if high <= 0.0:  # sections too long for the beam without a force
@@ -145,12 +187,88 @@ def static_stretch(
         N = 0.5 * (low + high)
         if not low < N < high:
             break
-        _assemble(bands, M_0, EI, N, bed, grid)
+        _assemble(bands, M_0, EI, N, bed, grid, grid.right)
         above = _solve(w, bands, grid) and softness * N + longer >= _arc(w, grid)
         low, high = (low, N) if above else (N, high)
-    _assemble(bands, M_0, EI, high, bed, grid)
+    _assemble(bands, M_0, EI, high, bed, grid, grid.right)
     _solve(w, bands, grid)
     return high
+
+
+@compiled
+def _steepness(w: Array, bands: Array, grid: BeamGrid) -> float:
+    """Return what deflection adds to g'(N) (m/N), after a solution for w; w, load: overwritten."""
+    load, rows = bands[3], _rows(grid, grid.right)
+    for i in range(rows[0], rows[1] + 1):
+        ahead = w[i + 1] - w[i] if i < grid.stop else 0.0
+        behind = w[i] - w[i - 1] if i >= grid.first else 0.0
+        load[i] = bands[4, i] = (behind - ahead) / grid.dx
+    _substitute(w, bands, rows)
+    total = 0.0
+    for i in range(rows[0], rows[1] + 1):
+        total += bands[4, i] * w[i]
+    return total
+
+
+@compiled
+def has_second_rest(
+    w: Array,
+    bands: Array,
+    M_0: Array,
+    N_0: Array,
+    EI: float,
+    EA: float,
+    bed: float,
+    grid: BeamGrid,
+) -> bool:
+    """Return whether a beam with held ends has a second stable shape, its plastic strains held.
+
+    w: room, (last + 3). bands: room, (5, last + 3). The others: see static_stretch. Of a half beam
+    the pivots of antisymmetric shapes, whose middle is as if pinned, have to be positive.
+    """
+    softness, longer = _lengths(N_0, EA, grid)
+    low, high = -longer / softness, 0.0
+    if low >= high:
+        return False
+    rows, pinned = _rows(grid, grid.right), _rows(grid, PINNED)
+    _assemble(bands, M_0, EI, low, bed, grid, grid.right)
+    if _factor(bands, rows, 0) == 0:  # no force below the buckling load is possible
+        return False
+    for _ in range(_HALVINGS):
+        N = 0.5 * (low + high)
+        if not low < N < high:
+            break
+        turned = 0
+        if grid.right == SYMMETRIC:
+            _assemble(bands, M_0, EI, N, bed, grid, PINNED)
+            turned = _factor(bands, pinned, 0)
+        _assemble(bands, M_0, EI, N, bed, grid, grid.right)
+        negative = _factor(bands, rows, 1)
+        if negative == 0:
+            high = N
+        elif negative > 1 or turned > 0:
+            low = N
+        else:
+            _substitute(w, bands, rows)
+            if softness * N + longer >= _arc(w, grid):
+                return True
+            rises = softness + _steepness(w, bands, grid) > 0.0
+            low, high = (N, high) if rises else (low, N)
+    return False
+
+
+@compiled
+def rests_twice(state: State) -> bool:
+    """Return whether a beam that was put to rest has a second stable shape."""
+    _, section, grid, beam, plastic, stretch = state
+    if not (stretch.held[0] and stretch.held[1]):
+        return False
+    EI, EA, bed = section.stiffness, stretch.stiffness, stretch.resistance.bed
+    bed *= grid.mu / grid.dt**2
+    w, bands = beam.w[1], stretch.bands
+    twice = has_second_rest(w, bands, plastic.M_0, stretch.N_0, EI, EA, bed, grid)
+    rest_nodes(beam, grid)
+    return twice
 
 
 @compiled

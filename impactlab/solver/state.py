@@ -70,7 +70,8 @@ class BeamModel(NamedTuple):
     width, both times the width, N m. bend_back(state, now, contact, growth): let the
     kink of kink.py grow by so much, rad. section: functions that make room for a section and cut
     it; None: those of section.py for half of the fibres. settle(state): put it to rest, as its
-    plastic strains leave it (settle.py); None: it cannot be struck twice. push(state, now, nodes,
+    plastic strains leave it (settle.py); None: it cannot be struck twice. rests_twice(state):
+    whether it has another stable shape then; None: it has none. push(state, now, nodes,
     forces): add forces (N) on nodes other than the struck one to a step just made, and set beam.w
     and beam.u there; return what `energy` has too much then (J). further: see above.
     """
@@ -92,5 +93,6 @@ class BeamModel(NamedTuple):
     moments: Callable[..., tuple[float, float]] | None = None
     bend_back: Callable[..., None] | None = None
     section: tuple[Callable[..., Any], Callable[..., Any]] | None = None
+    rests_twice: Callable[..., bool] | None = None
     push: Callable[..., float] | None = None
     further: FurtherSpheres | None = None

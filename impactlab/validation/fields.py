@@ -79,11 +79,14 @@ def one_of(kind: str, choices: Collection[str]) -> BeforeValidator:
     return BeforeValidator(check, json_schema_input_type=Literal[tuple(choices)])
 
 
-def names(kind: str, choices: Collection[str]) -> PlainValidator:
-    """Return the reader of `all`, or of a list of some of the choices (and of the study's own)."""
+def names(kind: str, choices: Collection[str], further: Collection[str] = ()) -> PlainValidator:
+    """Return the reader of `all` choices, or of a list of some (and of the study's own).
+
+    further: what may be listed, and is not among `all`.
+    """
 
     def read(data: Any, info: ValidationInfo) -> tuple[str, ...]:
-        every = dict.fromkeys([*choices, *(info.context or {}).get(f"{kind}s", ())])
+        every = dict.fromkeys([*choices, *further, *(info.context or {}).get(f"{kind}s", ())])
         adapter: TypeAdapter[list[str]] = TypeAdapter(list[Annotated[str, one_of(kind, every)]])
         if data == "all":
             return tuple(choices)
@@ -94,7 +97,7 @@ def names(kind: str, choices: Collection[str]) -> PlainValidator:
             raise ValueError(f"names {twice[0]} more than once: name each {kind} once")
         return tuple(entries)
 
-    word: Any = one_of(kind, choices).json_schema_input_type
+    word: Any = one_of(kind, [*choices, *further]).json_schema_input_type
     return PlainValidator(read, json_schema_input_type=Literal["all"] | list[word])
 
 

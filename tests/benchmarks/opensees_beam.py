@@ -3,7 +3,8 @@
 Half the beam, or all of it where struck beside its middle: displacement-based elements with cubic
 shape functions and lumped mass, corotational where the axis is held, three Lobatto sections each,
 elastic-perfectly plastic, of the same fibres as ours (a rectangle), or of layers of each flange and
-of the web (an I-section, a box); Newmark's average acceleration with Newton's iterations.
+of the web (an I-section, a box); elastic ends on springs to fixed nodes; Newmark's average
+acceleration with Newton's iterations.
 Source: F. McKenna, Comput. Sci. Eng. 13 (2011) 58.
 """
 
@@ -69,9 +70,22 @@ def strike(  # noqa: C901
     for node in range(elements + 1):
         ops.node(node + 1, node * dx, 0.0)
     for end, support in ((1, beam.support_left), (elements + 1, beam.support_right))[: 2 - halved]:
-        ops.fix(end, int(held), 1, int(support == "clamped"))
+        elastic = support == "elastic"
+        ops.fix(end, int(held), int(not elastic), int(support == "clamped"))
     if halved:
         ops.fix(middle, 1, 0, 1)
+    springs = {}
+    for side, end in (("left", 1), ("right", elements + 1))[: 2 - halved]:
+        if getattr(beam, f"support_{side}") == "elastic":
+            lift, turn = (getattr(beam, f"{of}stiffness_{side}") for of in ("", "rotational_"))
+            springs[end] = lift, turn
+            ops.node(1000 + end, ops.nodeCoord(end, 1), 0.0)
+            ops.fix(1000 + end, 1, 1, 1)
+            tags = 10 * end, 10 * end + 1
+            for tag, stiffness in zip(tags, springs[end], strict=True):
+                ops.uniaxialMaterial("Elastic", 10_000 + tag, stiffness)
+            numbers = [10_000 + tag for tag in tags]
+            ops.element("zeroLength", 1000 + end, 1000 + end, end, "-mat", *numbers, "-dir", 2, 6)
     ops.uniaxialMaterial("ElasticPP", 1, E, steel.yield_stress / E)
     ops.section("Fiber", 1)
     for y, area in fibres:
@@ -101,9 +115,12 @@ def strike(  # noqa: C901
     F = np.interp(np.linspace(0.0, 1.0, steps + 1), np.linspace(0.0, 1.0, force.size), force)
     work = float(np.sum(0.5 * (F[1:] + F[:-1]) * np.diff(w)))
     moving = sum(mass * dx * ops.nodeVel(k, i) ** 2 for k in range(2, elements + 1) for i in (1, 2))
-    moving += 0.5 * mass * dx * ops.nodeVel(elements + 1, 2) ** 2
+    moving += 0.5 * mass * dx * sum(ops.nodeVel(k, 2) ** 2 for k in (1, elements + 1))
     moving *= 1.0 if halved else 0.5
-    stored = 0.0
+    stored = (1.0 if halved else 0.5) * sum(
+        lift * ops.nodeDisp(end, 2) ** 2 + turn * ops.nodeDisp(end, 3) ** 2
+        for end, (lift, turn) in springs.items()
+    )
     per_element = dx if halved else 0.5 * dx
     for k in inside:
         for section, weight in enumerate((1.0, 4.0, 1.0), start=1):

@@ -26,6 +26,7 @@ from impactlab.variables import (
     OF_STRIKES,
     PROFILES,
     RESPONSES,
+    SCALARS,
     STATUS_FLAGS,
     WARNINGS,
     attributes,
@@ -67,7 +68,7 @@ def test_no_name_is_used_twice():
     with pytest.raises(KeyError, match="contact_farce"):
         attributes("contact_farce")
     # responses name the flags that make them missing
-    for name, entry in RESPONSES.items():
+    for name, entry in SCALARS.items():
         named = set(attributes(name).get("missing_because", "").split())
         assert named == ({*WHOLE_RUN, entry.missing} if entry.missing else set())
         assert named <= set(STATUS_FLAGS)
@@ -97,7 +98,9 @@ def test_status_bits_are_those_that_matter_to_the_asked_responses():
     assert status_bits([]) == whole
     assert status_bits(["energy_error"]) == whole
     assert status_bits(["contact_duration"]) == whole | BITS["first_contact_unfinished"]
-    assert status_bits(RESPONSES) == FAILED == sum(bit for bit, _ in FAILURES.values())
+    assert status_bits(SCALARS) == FAILED == sum(bit for bit, _ in FAILURES.values())
+    assert status_bits(RESPONSES) | BITS["not_steady"] | BITS["no_shakedown"] == FAILED
+    assert status_bits(RESPONSES) & (BITS["not_steady"] | BITS["no_shakedown"]) == 0
     assert sum(BITS.values()) == FAILED | MARKED
     assert BITS["outside_contact_law"] == MARKED
     assert status_bits(["output of a test function"]) == whole

@@ -102,6 +102,32 @@ def test_both_schemes_have_one_limit_and_keep_the_energy(springs, place):
     assert np.abs(profile).max() < 0.02 * np.abs(leapfrog.deflection).max().item()
 
 
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("springs", "place"),
+    [(SPRINGS[3], 0.5), (((200.0, 10.0), (np.inf, 0.0)), 0.25)],
+    ids=["both ends", "one end"],
+)
+def test_yielding_beam_is_that_of_opensees(springs, place):
+    """Under the same force, extrapolated from two meshes; where `opensees` is installed."""
+    pytest.importorskip("openseespy")
+    from ..benchmarks.opensees_beam import strike
+
+    impact, duration = on_springs(springs, place), 3e-3
+    metal = replace(impact.beam.material, isotropic_hardening_modulus=0.0)
+    impact = replace(impact, beam=replace(impact.beam, material=metal))
+    grid = il.Discretisation(nodes=321, points=9)
+    run = il.simulate(impact, grid, duration=duration, samples=8001)
+    coarse, fine = (
+        np.array(strike(impact.beam, run.contact_force.values, duration, n, 4000, place=place))
+        for n in (40, 80)
+    )
+    deflection, dissipation = 2.0 * fine - coarse
+    assert np.abs(fine / coarse - 1.0).max() < 0.05
+    assert run.midspan_deflection.max() == pytest.approx(deflection, rel=0.01)
+    assert run.plastic_dissipation == pytest.approx(dissipation, rel=0.02)
+
+
 @pytest.mark.parametrize("scheme", ["leapfrog", "modal"])
 @pytest.mark.parametrize(
     ("springs", "limit"),

@@ -9,18 +9,31 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize
+from scipy.special import ellipk
 
 import impactlab as il
 from impactlab.model.case_table import case_table
-from impactlab.solver.outputs import STRETCHING_LEFT_OUT
+from impactlab.model.section import fibre_table
+from impactlab.simulate import run_dataset
+from impactlab.solver.beam import CLAMPED, PINNED, make_beam, make_grid
+from impactlab.solver.contact.history import make_pair
+from impactlab.solver.fibre_plasticity import make_plastic_state
+from impactlab.solver.jit import compiled
+from impactlab.solver.outputs import SECOND_REST, STRETCHING_LEFT_OUT
 from impactlab.solver.responses import stretching
+from impactlab.solver.section import cut_whole_section, make_whole_room
+from impactlab.solver.settle_stretch import has_second_rest, static_axis
+from impactlab.solver.stability import discretise
+from impactlab.solver.state import State
+from impactlab.solver.von_karman import MODEL
 from impactlab.verification.cases import elastic, with_beam_material
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::impactlab.TooShortWarning", "ignore::impactlab.ImplausibleWarning"
 )
 
+STEP = MODEL.step
 PAPER = il.paper_impact(20.0)
 GRID = il.Discretisation(nodes=81, points=9)
 
@@ -248,6 +261,146 @@ def test_yielding_beam_is_that_of_opensees(left, right, place):
     assert np.abs(fine / coarse - 1.0).max() < 0.03
     assert run.midspan_deflection.max() == pytest.approx(deflection, rel=0.01)
     assert run.plastic_dissipation == pytest.approx(dissipation, rel=0.02)
+
+
+@compiled
+def vibrate(state, mid):
+    """Fill `mid` with the deflection of the struck node, a step apart (m)."""
+    now = 0
+    for step in range(mid.size):
+        mid[step] = state.beam.w[now, state.grid.mid]
+        STEP(state, now, 0.0)
+        now = 1 - now
+
+
+def free_vibration(impact, n, amplitude, N, duration):
+    """Return times (s) and deflection of mid-span (m), from rest in n half-waves under N (N)."""
+    cases = case_table(impact, il.Discretisation(nodes=65), duration=duration)
+    case, pair = cases[0], make_pair(cases[0])
+    section = cut_whole_section(case, fibre_table(cases)[0], make_whole_room(case))
+    grid, steps = discretise(case, pair, section)
+    beam, plastic = make_beam(grid), make_plastic_state(grid, section)
+    stretch = MODEL.make(case, section, grid)
+    k, EA = n * np.pi / case.beam_span, stretch.stiffness
+    beam.w[:] = amplitude * np.sin(k * grid.dx * (np.arange(grid.last + 3) - grid.first + 1))
+    stretch.N_0[:] = N
+    pull = N + 0.25 * EA * (k * amplitude) ** 2
+    static_axis(stretch.u, beam.w[0], pull, stretch.N_0, EA, stretch.held, grid)
+    mid = np.empty(steps)
+    vibrate(State(pair, section, grid, beam, plastic, stretch), mid)
+    return grid.dt * np.arange(steps), mid
+
+
+def half_periods(times, w):
+    """Return the times (s) at which w crosses zero, by interpolation."""
+    at = np.flatnonzero(w[1:] * w[:-1] < 0.0)
+    return times[at] + (times[1] - times[0]) * w[at] / (w[at] - w[at + 1])
+
+
+@pytest.mark.parametrize(("n", "pull"), [(1, 0.0), (1, 3.0), (1, -0.5), (3, 0.0), (3, 3.0)])
+@pytest.mark.parametrize("amplitude", [1e-3, 1.0, 3.0])
+def test_free_vibrations_have_woinowsky_kriegers_period(amplitude, pull, n):
+    """T = 4 K(m)/sqrt(k^2 (EI k^2 + N)/mu + g), of the elliptic integral with m = g/2 over that.
+
+    g = EA k^4 A^2/(4 mu). amplitude: A over the radius of gyration. pull: N over EI k^2.
+    """
+    impact = held(elastic(PAPER), depth=0.006)
+    beam, k = impact.beam, n * np.pi / impact.beam.span
+    EI, mu = beam.bending_stiffness, beam.mass_per_length
+    N, r = pull * EI * k**2, beam.depth / np.sqrt(12.0)
+    hardening = 0.25 * EI * k**4 * amplitude**2 / mu
+    square = (EI * k**2 + N) * k**2 / mu + hardening
+    expected = 4.0 * ellipk(0.5 * hardening / square) / np.sqrt(square)
+    times, w = free_vibration(impact, n, amplitude * r, N, 3.3 * expected)
+    assert 2.0 * np.diff(half_periods(times, w)) == pytest.approx(expected, rel=2e-3)
+
+
+def test_a_pulled_beams_vibrations_decay_by_the_bending_alone():
+    """decay = (alpha + beta EI k^4/mu)/2: the axial force stores energy without strain rate."""
+    impact = held(elastic(PAPER), depth=0.006, mass_damping=20.0, stiffness_damping=2e-4)
+    beam, k = impact.beam, np.pi / impact.beam.span
+    bent = beam.bending_stiffness * k**4 / beam.mass_per_length
+    decay, N = 0.5 * (20.0 + 2e-4 * bent), 3.0 * beam.bending_stiffness * k**2
+    turn = np.sqrt(4.0 * bent - decay**2)
+    times, w = free_vibration(impact, 1, 1e-6, N, 5.0 * 2.0 * np.pi / turn)
+    crossings = half_periods(times, w)
+    assert np.pi / np.diff(crossings) == pytest.approx(turn, rel=2e-3)
+    spans = itertools.pairwise(crossings)
+    peaks = [np.abs(w[(times > start) & (times < end)]).max() for start, end in spans]
+    assert -np.diff(np.log(peaks)) / np.diff(crossings[1:]) == pytest.approx(decay, rel=5e-3)
+
+
+# rise over the radius of gyration from which a bowed beam without a load rests bowed the other way,
+# too: of a half-wave (pinned) and a whole one (clamped, as soon as no antisymmetric shape buckles)
+SECOND_REST_FROM = {"pinned": 4.0, "clamped": 19.565}
+
+
+@pytest.mark.parametrize("copies", [1, 2], ids=["whole", "half"])
+@pytest.mark.parametrize("ends", SECOND_REST_FROM)
+def test_a_second_rest_is_that_of_a_shallow_arch(ends, copies):
+    """Under N = P_1 (a/q - 1) an arch of rise a, stress-free there, has the rise q = -s < 0.
+
+    Its length asks for s^2 - a s + m^2 (2 r)^2 = 0 with m half-waves. The larger root is stable
+    unless N is below the second buckling load (of the clamped beam 8.183 pi^2 EI/L^2).
+    """
+    kind, waves = (PINNED, 1) if ends == "pinned" else (CLAMPED, 2)
+    grid = make_grid(401, 1.0 / 400, 1e-6, 1.0, 1.0, kind, kind, alike=copies == 2)
+    assert grid.copies == copies
+    x = (np.arange(grid.last + 3) - grid.first + 1) / 400.0
+    gyration = 1e-3
+    EA, k, room = 1.0 / gyration**2, waves * np.pi, np.zeros((5, x.size))
+    for share, expected in ((0.1, False), (0.99, False), (1.01, True), (3.0, True)):
+        rise = share * SECOND_REST_FROM[ends] * gyration / waves  # of each sine
+        bent = k**2 * rise * (-np.sin(k * x) if waves == 1 else np.cos(k * x))
+        longer = np.full(x.size, -EA * 0.25 * (k * rise) ** 2)
+        found = has_second_rest(np.zeros(x.size), room, bent, longer, 1.0, EA, 0.0, grid)
+        assert found is expected, share
+
+
+def rest_from(start, run, beam):
+    """Return the pinned beam's deflection (m) at rest near `start`, its energy (J) and stiffness.
+
+    By Newton's steps in a trust region, under the run's plastic strains; N is the same everywhere.
+    The stiffness (N/m) is that of the softest shape.
+    """
+    dx, E = beam.span / (run.x.size - 1), beam.material.youngs_modulus
+    z, area = beam.section.cut("lobatto", run.z.size)
+    plastic, share = run.plastic_strain.values, np.full(run.x.size, dx)
+    share[[0, -1]] *= 0.5
+    bent = -plastic @ (area * z) / (area @ z**2)
+    longer = share @ (plastic @ area) / area.sum()
+    EI, EA = E * (area @ z**2), E * area.sum()
+    bends = np.diff(np.eye(run.x.size), 2, axis=0)[:, 1:-1] / dx**2
+    slopes = np.diff(np.eye(run.x.size), axis=0)[:, 1:-1] / dx
+    stiff, turns = EI * dx * bends.T @ bends, dx * slopes.T @ slopes
+
+    def energy(w):
+        N = EA / beam.span * (0.5 * w @ turns @ w - longer)
+        total = 0.5 * EI * dx * ((bends @ w - bent[1:-1]) ** 2).sum() + 0.5 * N**2 * beam.span / EA
+        return total, stiff @ w - EI * dx * bends.T @ bent[1:-1] + N * turns @ w
+
+    def hessian(w):
+        N, pull = EA / beam.span * (0.5 * w @ turns @ w - longer), turns @ w
+        return stiff + N * turns + EA / beam.span * np.outer(pull, pull)
+
+    found = minimize(energy, start[1:-1], jac=True, hess=hessian, method="trust-exact")
+    return np.pad(found.x, 1), found.fun, np.linalg.eigvalsh(hessian(found.x))[0]
+
+
+@pytest.mark.parametrize(("depth", "twice"), [(0.006, True), (0.0065, False)])
+def test_a_second_rest_after_a_strike_is_remarked(depth, twice):
+    """In the one of two that has the least energy the beam is put to rest."""
+    impact = held(heavy(0.26, 20.0), depth=depth)
+    run = run_dataset(impact, GRID, duration=0.03, samples=2, strikes=1)
+    shape = run.deflection.values
+    rests = [rest_from(side * shape, run, impact.beam) for side in (1.0, -1.0)]
+    assert min(stiffness for _, _, stiffness in rests) > 0.0
+    (one, _, _), (other, _, _) = rests
+    assert (np.abs(one - other).max() > 0.2 * depth) == twice
+    least, _, _ = min(rests, key=lambda rest: rest[1])
+    residual = run.residual_deflection_over_strikes.item()
+    assert residual == pytest.approx(least[GRID.nodes // 2], rel=1e-5)
+    assert bool(run.remarks.item() & SECOND_REST) == twice
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,7 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.parameters import Value, flatten, with_values
 from impactlab.provenance import provenance
 from impactlab.solver.jit import SOURCES_HASH
+from impactlab.study.design import series_sizes
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
 from impactlab.study.schema.declarations import Auto, ImpactStudy
@@ -288,6 +289,7 @@ def solve_along(
     attrs: dict[str, Any] = {"study": study.name, "varied": [*cases, axis]}
     attrs["responses"] = list(study.responses)
     attrs |= {"histories": 0, "profiles": 0, "history_samples": study.store.samples}
+    attrs |= series_sizes(study)
     if study.python:
         attrs["solver"] = resolve_name("impactlab.study.solvers.own:solver_name")(study)
     runs = execute(described(xr.Dataset(coords=scalars | varied, attrs=attrs)), folder, engine)

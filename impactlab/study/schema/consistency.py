@@ -27,6 +27,7 @@ from impactlab.solver import (
     LUMPED_MODELS,
     WAVE_MODELS,
 )
+from impactlab.solver.outputs import GROWING
 from impactlab.study.schema.declarations import FunctionStudy, ImpactStudy, StudyFile
 from impactlab.validation.errors import unknown
 from impactlab.validation.refusals import Base, refused_corner
@@ -122,6 +123,21 @@ def _runs_for_the_analyses(file: StudyFile) -> Reasons:
     imputed = file.analysis is not None and file.analysis.failed_runs == "impute"
     if imputed and (reason := file.sampling.no_surrogate):
         yield "analysis.failed_runs", f"{reason}: set failed_runs: fail"
+
+
+def _strikes_for_the_responses(file: StudyFile) -> Reasons:
+    """Check that responses of several strikes have several, and that none is made up."""
+    listed = [name for name in GROWING if name in file.responses]
+    most = max(map(int, values_of(file.sampling, "strikes", file.impact.strikes)))
+    if listed and most == 1:
+        reason = "needs several strikes: vary strikes, set impact.strikes, or leave it out"
+        yield "responses", f"{listed[0]} {reason}"
+    if listed and file.analysis is not None and file.analysis.failed_runs == "impute":
+        reason = (
+            f"a run without {listed[0]} has it beyond its last strike, and a surrogate of the "
+            "other runs would not know: set failed_runs: fail"
+        )
+        yield "analysis.failed_runs", reason
 
 
 def limit_reasons(file: StudyFile | FunctionStudy) -> Reasons:
@@ -286,6 +302,7 @@ CHECKS: tuple[tuple[Callable[[StudyFile], Reasons], set[str]], ...] = (
     (_mass_and_density, {"impact", "sampling"}),
     (_one_mesh_for_profiles, {"store", "sampling"}),
     (_runs_for_the_analyses, {"analyses", "analysis", "sampling", "store"}),
+    (_strikes_for_the_responses, {"analysis", "impact", "responses", "sampling"}),
     (limit_reasons, {"limits", "responses", "analyses", "sampling"}),
     (_automatic_discretisation, {"discretisation", "responses", "sampling"}),
     (_indices_to_grow_by, {"analyses", "responses", "sampling"}),

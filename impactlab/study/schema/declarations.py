@@ -27,6 +27,7 @@ from impactlab.model.impact import BASES, Impact, paper_impact
 from impactlab.model.parameters import PARAMETERS, with_values
 from impactlab.model.quantities import duration, symbol
 from impactlab.solver import SCHEMES
+from impactlab.solver.outputs import GROWING
 from impactlab.validation.fields import (
     FileSection,
     Heading,
@@ -43,6 +44,8 @@ from impactlab.validation.fields import (
 from impactlab.validation.refusals import Base, refusal
 from impactlab.variables import RESPONSES
 
+_RESPONSES = names("response", RESPONSES, GROWING)
+
 
 class Auto(FileSection):
     """The key `auto`: a discretisation to be found by pilot runs on corner cases of the study.
@@ -51,7 +54,7 @@ class Auto(FileSection):
     """
 
     tolerance: Annotated[Number, Field(ge=1e-4, le=0.5)] = 0.01
-    responses: Annotated[tuple[str, ...], names("response", RESPONSES)] | None = None
+    responses: Annotated[tuple[str, ...], _RESPONSES] | None = None
 
 
 _BASE: dict[str, Any] = {"impact": paper_impact(), "discretisation": Discretisation()}
@@ -179,7 +182,7 @@ class StudyFile(Heading):
     ] = Discretisation(), None
     duration: Annotated[float, BeforeValidator(duration), Field(gt=0)]
     sampling: Annotated[Grid | RandomSample, PlainValidator(read_sampling)]
-    responses: Annotated[tuple[str, ...], names("response", RESPONSES)] = tuple(RESPONSES)
+    responses: Annotated[tuple[str, ...], _RESPONSES] = tuple(RESPONSES)
     analyses: Annotated[tuple[str, ...], names("analysis", ANALYSES)] = tuple(ANALYSES)
     limits: Limits = Field(default_factory=dict)
     store: Store = Field(default_factory=Store)
@@ -249,7 +252,7 @@ class ImpactStudy(StudyBase):
     """A study of impacts, in SI units.
 
     impact and discretisation: the base of all runs. auto: how to find nodes, points and courant
-    where they are not given. duration: simulated time in s. responses: names out of RESPONSES.
+    where they are not given. duration: simulated time in s. responses: names out of SCALARS.
     store: other data kept of each run. measurements: files of measurements to compare with.
     python: keys of the responses that are Python functions.
     """

@@ -16,7 +16,7 @@ from impactlab.study.schema.declarations import DISCRETISATION, IMPACT, StudyFil
 from impactlab.study.schema.readers import FunctionFile, verification_file
 from impactlab.study.schema.table_file import Column, TableFile
 from impactlab.validation.fields import value_type
-from impactlab.variables import RESPONSES
+from impactlab.variables import SCALARS
 from impactlab.verification.functions import FUNCTIONS
 
 Schema = dict[str, Any]
@@ -39,7 +39,7 @@ def study_schema() -> Schema:
         "discretisation": {"anyOf": [{"const": "auto"}, _object(DISCRETISATION)]},
         "duration": _QUANTITY,
         "sampling": _sampling("parameters"),
-        "limits": _closed(dict.fromkeys(RESPONSES, _QUANTITY)),
+        "limits": _closed(dict.fromkeys(SCALARS, _QUANTITY)),
     }
     function = _object(FunctionFile)
     function["properties"] |= {

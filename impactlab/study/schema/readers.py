@@ -28,7 +28,7 @@ from impactlab.study.schema.table_file import TableStudy, table_study
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source, text_of
 from impactlab.validation.errors import Problem, StudyError, unknown
 from impactlab.validation.fields import Heading, Names, names, validated
-from impactlab.variables import FLAGS, RESPONSES, VARIABLES
+from impactlab.variables import FLAGS, SCALARS, VARIABLES
 from impactlab.verification.functions import FUNCTIONS
 
 
@@ -151,7 +151,7 @@ _STAND_INS: dict[str, Any] = {
 def _study(source: Source) -> ImpactStudy:
     path, data = str(source.path), dict(source.data)
     python, units = _python_responses(data.pop("python_responses", {}), path)
-    units = {name: response.units for name, response in RESPONSES.items()} | units
+    units = {name: response.units for name, response in SCALARS.items()} | units
     problems: list[Problem] = []
     try:
         file = validated(StudyFile, data, path, responses=units)

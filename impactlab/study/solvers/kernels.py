@@ -42,7 +42,8 @@ _BESIDE_SPHERES = ("strike_position", "support_left", "support_right")
 
 def columns(design: xr.Dataset) -> tuple[str, ...]:
     """Return the names of the requested responses, their flags, and of what is kept beside them."""
-    return (*listed(design, "responses"), "status", "remarks", *kept(OutputSpec.of(design)))
+    names = (*listed(design, "responses"), "status", "remarks", *kept(OutputSpec.of(design)))
+    return tuple(dict.fromkeys(names))
 
 
 def kept(output: OutputSpec) -> tuple[str, ...]:

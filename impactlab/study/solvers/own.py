@@ -23,6 +23,7 @@ from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, SECTION, WORDS, with_values
 from impactlab.model.section import section_values
 from impactlab.simulate import run_dataset
+from impactlab.solver.outputs import STILL_GROWING
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy
 from impactlab.study.shard import Array, Columns
 from impactlab.study.solvers import Solver, flattened, on_design
@@ -265,6 +266,7 @@ def _responses(task: Task, cases: Array, output: OutputSpec) -> Columns:
             )
         names = (*RESPONSES, *FLAGS, *kept(output))
         row: dict[str, Any] = {name: run[name].values for name in names}
+        row["status"] = row["status"] | row["remarks"] & STILL_GROWING  # of listed responses
         for name, function in task.functions.items():
             value = _number(function, f"responses.{name}", run)
             row[name] = _real(value, f"responses.{name}")

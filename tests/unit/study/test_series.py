@@ -14,7 +14,7 @@ from impactlab.solver.outputs import SERIES, by_strike, first_without_growth
 from impactlab.solver.types import CASE
 from impactlab.study.design import design
 from impactlab.study.estimate import estimate
-from impactlab.variables import BY_SPHERE, BY_STRIKE, OF_STRIKES, WARNINGS
+from impactlab.variables import BY_SPHERE, BY_STRIKE, OF_STRIKES, STATUS_FLAGS, WARNINGS
 
 GRID = il.Discretisation(nodes=33, points=5, scheme="modal")
 IMPACT = il.paper_impact(1.0, "finite_element")
@@ -50,12 +50,8 @@ def test_each_run_has_its_own_strikes_and_no_more(strikes):
     for name in BY_STRIKE:
         first = runs[name].sel(strikes=1)
         assert np.isnan(first.values[:, 1:]).all()
-        if name == "residual_deflection_over_strikes":
-            assert np.isnan(first.values).all()
-        else:
-            unfinished = np.isnan(first.values[:, 0])
-            same = first.values[:, 0] == longest[name].values[:, 0]
-            assert (same | unfinished).all()
+        assert first.values[:, 0].tobytes() == longest[name].values[:, 0].tobytes(), name
+        assert np.isfinite(first.values[:, 0]).all()
 
 
 def test_what_a_study_says_of_the_end_of_growth_is_what_its_series_show(strikes):
@@ -71,6 +67,99 @@ def test_what_a_study_says_of_the_end_of_growth_is_what_its_series_show(strikes)
     assert headline.startswith("Over 12 strikes the dent grows to ")
     assert "in 1 of 2 runs dent and deflection no longer grow from strike " in headline
     assert any("Shakedown" in line for line in lines)
+
+
+GROWTH = ("steady_strike", "shakedown_strike")
+
+
+def test_strikes_without_growth_are_responses_of_a_grid(strikes, tmp_path):
+    """Their values are those of a study that does not list them, and `status` explains gaps."""
+    runs, _ = strikes
+    listed = il.Study(
+        title="Growth",
+        impact=IMPACT,
+        discretisation=GRID,
+        duration="15 ms",
+        sampling=il.Grid(parameters={"strikes": [9, 1, 12], "velocity": [0.5, 1.0]}),
+        responses=[*GROWTH, "peak_force"],
+        results=tmp_path,
+    ).run(workers=1)
+    assert access.responses(listed) == ["peak_force", *GROWTH]
+    for name in GROWTH:
+        assert listed[name].values.tobytes() == runs[name].values.tobytes()
+        bit = STATUS_FLAGS[listed[name].attrs["missing_because"].split()[-1]][0]
+        missing = np.isnan(listed[name])
+        assert ((listed.status & bit != 0) == missing).all()
+        assert (listed.remarks & bit == 0).all()
+        assert (runs.status & bit == 0).all()
+        assert ((runs.remarks & bit != 0) == missing).all()
+    assert (access.failed(listed) == np.isnan(listed.steady_strike)).all()
+    assert not access.failed(runs).any()
+    assert "5 of 6 runs: missing because the last strike still makes" in il.explain(listed)[-1]
+    assert {*GROWTH, "status"} <= set(il.table(listed))
+    il.analyse(listed)
+
+
+def growth_sample(results, velocities, responses, **further):
+    return il.Study(
+        title="Growth",
+        impact=replace(IMPACT, strikes=20),
+        discretisation=GRID,
+        duration="15 ms",
+        sampling=il.Sobol(
+            parameters={
+                "velocity": il.Uniform(*velocities),
+                "sphere_radius": il.Uniform("19 mm", "21 mm"),
+            },
+            base_samples=8,
+        ),
+        responses=responses,
+        results=results,
+        **further,
+    )
+
+
+@pytest.mark.parametrize(("fastest", "missing"), [(0.5, False), (5.0, True)])
+def test_strikes_without_growth_have_indices_where_every_run_has_one(tmp_path, fastest, missing):
+    study = growth_sample(tmp_path, (0.4, fastest), ["steady_strike", "peak_force"])
+    runs = study.run(workers=1)
+    assert np.isnan(runs.steady_strike).any().item() is missing
+    found = il.analyse(runs).sel(response="steady_strike")
+    flags = found.sensitivity_verdict.attrs["flag_meanings"].split()
+    assert (flags[found.sensitivity_verdict.item()] == "failed_runs") is missing
+    assert np.isnan(found.total_order).all().item() is missing
+
+
+def test_functions_beside_strikes_without_growth_leave_their_status(tmp_path):
+    responses = {"mine": dent_of_last, "steady_strike": "steady_strike"}
+    study = il.Study(
+        title="Mine",
+        impact=IMPACT,
+        discretisation=GRID,
+        duration="15 ms",
+        sampling=il.Grid(parameters={"strikes": [1, 3]}),
+        responses=responses,
+        results=tmp_path,
+    )
+    runs = study.run(workers=1)
+    assert np.isnan(runs.steady_strike).all()
+    assert (runs.status == STATUS_FLAGS["not_steady"][0]).all()
+    assert np.isfinite(runs.mine).all()
+
+
+def test_strikes_without_growth_need_strikes_and_no_values_made_up(tmp_path):
+    with pytest.raises(il.StudyError, match="responses: steady_strike needs several strikes"):
+        il.Study(
+            title="One",
+            impact=IMPACT,
+            discretisation=GRID,
+            duration="15 ms",
+            sampling=il.Grid(parameters={"velocity": [1.0, 2.0]}),
+            responses=["steady_strike"],
+        )
+    analysis = {"failed_runs": "impute"}
+    with pytest.raises(il.StudyError, match="failed_runs: a run without shakedown_strike has it"):
+        growth_sample(tmp_path, (0.4, 1.0), ["shakedown_strike"], analysis=analysis)
 
 
 def test_tables_keep_one_row_per_run(strikes):

@@ -84,7 +84,7 @@ def test_a_short_file_takes_the_rest_from_base_and_defaults(read, grid):
     assert study.duration == 0.012
     assert isinstance(study.sampling, Grid)
     assert study.sampling.parameters == {"velocity": (0.5, 1.0)}
-    assert study.responses == tuple(RESPONSES)
+    assert study.responses == tuple(RESPONSES)  # those of several strikes are listed by name
     assert study.store == Store(histories=False, profiles=False, samples=1000)
     assert study.analysis == Analysis(confidence=0.95, resamples=200)
     assert (study.name, study.title, study.description) == ("some-study_1", "A grid", "")
