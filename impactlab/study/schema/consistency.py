@@ -23,8 +23,8 @@ from impactlab.model.quantities import shown
 from impactlab.solver import (
     BEAM_MODELS,
     BENDING_MODELS,
-    DAMPINGS,
     LUMPED_MODELS,
+    RAYLEIGH,
     WAVE_MODELS,
 )
 from impactlab.study.schema.declarations import FunctionStudy, ImpactStudy, StudyFile
@@ -235,8 +235,11 @@ def _resisted_beams(file: StudyFile, ends: Extremes) -> Reasons:
     """Check that what resists the motion of a beam has a model and a scheme."""
     sampling, grid = file.sampling, file.discretisation[0]
     models = set(values_of(sampling, "beam_model", file.impact.beam_model))
-    if any(ends[name][1] > 0.0 for name in DAMPINGS) and models - set(WAVE_MODELS):
+    damped = any(ends[name][1] > 0.0 for name in RAYLEIGH)
+    if damped and models - set(impact.MODELS_ON_SPRINGS):
         yield key_of("beam_model", sampling), f"must be {impact.DAMPED_BEAM}"
+    if ends["damping_ratio"][1] > 0.0 and models - set(WAVE_MODELS):
+        yield key_of("beam_model", sampling), f"must be {impact.RATIO_DAMPED_BEAM}"
     if ends["foundation_stiffness"][1] > 0.0 and models - set(impact.MODELS_ON_SPRINGS):
         yield key_of("beam_model", sampling), f"must be {impact.FOUNDED_BEAM}"
     schemes = values_of(sampling, "scheme", grid.scheme)
