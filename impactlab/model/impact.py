@@ -121,9 +121,10 @@ class Impact:
     further_spheres : str or sequence of mappings, optional
         Further spheres like `sphere`, at most 8: the `strike_position` of each, which no other has,
         its `velocity`, and its `delay` (by default 0), the time from the first sphere's touch to
-        its own; or rows of these in SI. Scalar responses are those of the first sphere. They need
-        a beam model whose nodes move, one strike, a point load and no `contact_prestress`
-        (solver/several_spheres.py). Kept as text, "0.25 3.0 0.0005".
+        its own; or rows of these in SI. Scalar responses are those of the first sphere. With
+        several strikes all come again in each. They need a beam model whose nodes move and no
+        `strike_interval`, and by scheme "modal" a point load (solver/several_spheres.py). Kept as
+        text, "0.25 3.0 0.0005".
 
     Raises
     ------

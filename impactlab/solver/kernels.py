@@ -93,6 +93,7 @@ def _keep_profiles(
 def _rest(model: BeamModel) -> Callable[..., int]:
     """Return a function that puts the beam to rest after a strike, unless it goes on moving."""
     settle, lift = model.settle, model.lift
+    rise = None if model.further is None else model.further.rise
 
     @compiled
     def rest(
@@ -116,6 +117,8 @@ def _rest(model: BeamModel) -> Callable[..., int]:
             kink.straighten(state.beam.w, state.grid, -contact.kink)
         pair, section, grid, beam, plastic = state[:5]
         dent, w = contact.delta_r, beam.w[row, grid.mid] - kink.height(grid, contact.kink)
+        if rise is not None:
+            w -= rise(state)
         if lift is not None:
             dent += lift(state, contact, 0.0)
         if strike < series.shape[0]:
@@ -128,9 +131,23 @@ def _rest(model: BeamModel) -> Callable[..., int]:
     return rest
 
 
+def _departure(model: BeamModel) -> Callable[..., bool]:
+    """Return a function that tells whether all spheres of a strike move away."""
+    leave = None if model.further is None else model.further.leave
+
+    @inlined
+    def leaves(state: State, events: Record) -> bool:
+        if leave is not None and not leave(state):
+            return False
+        return bool(responses.sphere_leaves(events))
+
+    return leaves
+
+
 def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
     """Return a function that solves a case; extended: see _kernel."""
     march, rest, lift = time_loop(model, extended), _rest(model), model.lift
+    leaves = _departure(model)
     largest_deflection = None if model.flight is None else model.flight.largest
 
     @inlined
@@ -147,7 +164,7 @@ def _run(model: BeamModel, extended: bool) -> Callable[..., int]:
         """Solve a case from rest, and fill in its answer; see march for what is returned."""
         now = int(np.int64(0))
         for strike in range(case.strikes):
-            if strike > 0 and not responses.sphere_leaves(events):
+            if strike > 0 and not leaves(state, events):
                 answer.status = EARLIER_STRIKE_UNFINISHED
                 return now
             interval = 0

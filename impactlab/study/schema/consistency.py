@@ -15,7 +15,13 @@ from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
 from impactlab.model import impact
 from impactlab.model.bodies import sphere_rows
-from impactlab.model.case_table import MODAL_DAMPING, NO_INTERVAL, TOO_SOON, between_nodes
+from impactlab.model.case_table import (
+    MODAL_DAMPING,
+    MODAL_PATCH,
+    NO_INTERVAL,
+    TOO_SOON,
+    between_nodes,
+)
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
 from impactlab.model.parameters import PARAMETERS, SECTION, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
@@ -259,6 +265,14 @@ def _several_strikes(file: StudyFile, ends: Extremes) -> Reasons:
     spheres, key = sphere_rows(file.impact.further_spheres or ()), "impact.further_spheres"
     if spheres and file.discretisation[1] is not None:
         yield "discretisation.auto", "needs one sphere: state the discretisation"
+        return
+    loads = values_of(sampling, "load", file.impact.load)
+    if (
+        spheres
+        and "contact_patch" in loads
+        and "modal" in values_of(sampling, "scheme", grid.scheme)
+    ):
+        yield key_of("load", sampling), MODAL_PATCH
         return
     for place, _, _ in spheres:
         for nodes in map(int, values_of(sampling, "nodes", grid.nodes)):
