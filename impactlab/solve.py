@@ -34,7 +34,7 @@ from impactlab.solver.jit import FOLDER
 from impactlab.solver.kernels import is_extended, kernel_of
 from impactlab.solver.outputs import DIVERGED, SERIES, blank, by_strike
 from impactlab.solver.section import FibreSection, make_section
-from impactlab.solver.several_spheres import Table, make_table
+from impactlab.solver.sphere_table import Table, make_table
 from impactlab.solver.types import VON_KARMAN
 from impactlab.variables import BY_SPHERE, FAILURES, HISTORIES, RESPONSES
 

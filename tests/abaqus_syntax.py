@@ -44,6 +44,7 @@ RULES = {
     "MATERIAL": Rule(MODEL, {"NAME": None}),
     "DENSITY": Rule(MODEL, lines=(1, 1), entries=(1, 1), follows="MATERIAL"),
     "ELASTIC": Rule(MODEL, lines=(1, 1), entries=(2, 2), follows="MATERIAL"),
+    "DAMPING": Rule(MODEL, optional={"ALPHA": None, "BETA": None}, follows="MATERIAL"),
     "PLASTIC": Rule(
         MODEL,
         optional={

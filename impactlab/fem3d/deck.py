@@ -23,11 +23,13 @@ from impactlab.fem3d.solver.mesh import (
 )
 from impactlab.fem3d.solver.springs import Springs, springs_of
 from impactlab.fem3d.solver.system import refuse_rate
+from impactlab.model.bodies import Beam
 from impactlab.model.checks import instance, one_of, positive
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
 from impactlab.model.material import Material
 from impactlab.model.parameters import PARAMETERS, flatten
+from impactlab.solver import RAYLEIGH
 from impactlab.verification.solutions import hertz
 
 LENGTH, _STRESS = 1e3, 1e-6  # mm per m, and MPa per Pa
@@ -43,14 +45,15 @@ _LONGEST = 10.0  # plastic strain at which the tables end; the stress remains fr
 class Flavour:
     """One program. elements: its types, fully integrated (True) and not. spring: its type.
 
-    kinematic: whether its kinematic hardening is right. limits: what a user has to know, a sentence
-    each.
+    kinematic: whether its kinematic hardening is right. damps: whether it damps the beam alone.
+    limits: what a user has to know, a sentence each.
     """
 
     program: str
     elements: Mapping[bool, str]
     spring: str
     kinematic: bool
+    damps: bool
     limits: tuple[str, ...]
 
 
@@ -60,6 +63,7 @@ FLAVOURS = {
         elements={True: "C3D8", False: "C3D8R"},
         spring="SPRINGA",  # SPRING1 is of Abaqus/Standard alone
         kinematic=True,
+        damps=True,
         limits=(
             "Never run: no Abaqus was at hand. Keywords are checked against its documented syntax "
             "as far as that could be read (docs/decks.md).",
@@ -71,6 +75,7 @@ FLAVOURS = {
         elements={True: "C3D8I", False: "C3D8I"},
         spring="SPRING1",
         kinematic=False,
+        damps=False,
         limits=(
             "Small displacements, implicit dynamics with equal steps, contact by a linear penalty: "
             f"the overclosure at its centre is about {100.0 * _OVERCLOSURE:.9g} % of the "
@@ -102,7 +107,7 @@ def write_deck(
     get through a contact (docs/decks.md). The same arguments give the same text.
 
     Raises ValueError naming the argument that is not valid, the path that cannot be written, or
-    what the program cannot do right: kinematic hardening in CalculiX.
+    what the program cannot do right: kinematic hardening and damping in CalculiX, damped springs.
     """
     chosen = FLAVOURS[one_of("deck", "flavour", flavour, tuple(FLAVOURS))]
     instance("deck", "impact", impact, Impact)
@@ -125,10 +130,11 @@ def write_deck(
                 f"but {chosen.program} softens such a material where it should harden: write the "
                 "deck for Abaqus, or with elastic materials"
             )
+    springs = springs_of(mesh, impact)
+    _refuse_damping(impact.beam, chosen, springs)
     # Hertz's largest pressure is 2 E* a/(pi R), his indentation a^2/R.
     modulus, radius = hertz.effective_modulus(impact), contact_radius(impact)
     values = flatten(impact, Discretisation())
-    springs = springs_of(mesh, impact)
     groups = {
         f"{_BODIES[body]}_{'FINE' if full else 'COARSE'}": (full, numbers)
         for body, full, numbers in mesh.groups()
@@ -144,7 +150,7 @@ def write_deck(
         given=[
             (PARAMETERS[name], values[name])
             for name in IMPACT_PARAMETERS
-            if name in values and (values[name] != 0.0 or "stiffness" not in name)
+            if name in values and (values[name] != 0.0 or not _may_be_absent(name))
         ],
         geometry="\n".join(_geometry(mesh, groups, impact.sphere.radius, chosen)),
         springs="".join(f"{line}\n" for line in _springs(mesh, springs, chosen)),
@@ -159,6 +165,24 @@ def write_deck(
     except OSError as error:
         raise ValueError(f"deck: cannot write {path}: {error.strerror}") from error
     return path
+
+
+def _may_be_absent(name: str) -> bool:
+    """Return whether zero of a parameter says that the beam does not have it."""
+    return "stiffness" in name or "damping" in name
+
+
+def _refuse_damping(beam: Beam, flavour: Flavour, springs: Springs) -> None:
+    """Raise ValueError where a deck would damp something else than the beam and its springs."""
+    names = [name for name in RAYLEIGH if getattr(beam, name) > 0.0]
+    reason = ""
+    if names and not flavour.damps:
+        reason = f"{flavour.program} damps the sphere, too: set it to 0, or write it for Abaqus"
+    elif "stiffness_damping" in names and springs.nodes.size:
+        names = ["stiffness_damping"]
+        reason = "springs of decks are not damped: set it to 0, or take the springs out"
+    if reason:
+        raise ValueError(f"deck: {names[0]} = {getattr(beam, names[0])!r}: {reason}")
 
 
 def _outer(mesh: Mesh, body: int) -> tuple[Integers, Integers]:

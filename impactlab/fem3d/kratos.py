@@ -26,6 +26,7 @@ from impactlab.model.checks import integer, positive
 from impactlab.model.impact import Impact
 from impactlab.model.material import Material
 from impactlab.provenance import provenance
+from impactlab.solver import RESISTANCES
 
 ELEMENT, LAW = "SmallDisplacementBbarElement3D8N", "SmallStrainJ2Plasticity3DLaw"
 TIME_STEP, PENALTY = 8e-6, 1e15  # s, and N/m3 (1e6 N/mm3)
@@ -62,19 +63,19 @@ def solve_on(
     converge, gives what it has computed until then, and the attribute `stopped` says why.
 
     Raises KratosMissingError when Kratos is not installed; ValueError when a number is not valid,
-    the mesh is of other bodies or no quarter of a pinned beam, or a material has kinematic
+    the mesh is of other bodies or no quarter of such a beam, or a material has kinematic
     hardening; and PatchTooSmallError (a ValueError) when the contact leaves the patch of matched
     nodes.
     """
     for name, value in (("duration", duration), ("time_step", time_step), ("penalty", penalty)):
         positive("solve", name, value)
     check_mesh(mesh, impact)
-    founded = impact.beam.foundation_stiffness > 0.0
-    if mesh.copies != 4 or mesh.ends != ("pinned", "pinned") or founded:
+    resisted = any(getattr(impact.beam, name) > 0.0 for name in RESISTANCES)
+    if mesh.copies != 4 or mesh.ends != ("pinned", "pinned") or resisted:
         raise ValueError(
-            "mesh: Kratos gets quarters of a pinned beam alone: set support_left: pinned, "
-            "support_right: pinned, strike_position: 0.5 and foundation_stiffness: 0, or take "
-            "impactlab's own solver"
+            "mesh: Kratos gets quarters of a pinned beam without damping or foundation alone: set "
+            "support_left: pinned, support_right: pinned, strike_position: 0.5, mass_damping: 0, "
+            "stiffness_damping: 0 and foundation_stiffness: 0, or take impactlab's own solver"
         )
     kratos = engine(integer("solve", "threads", threads, 1))
     run = Run(kratos, mesh, impact, duration=duration, time_step=time_step, penalty=penalty)

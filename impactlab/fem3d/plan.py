@@ -18,7 +18,7 @@ from impactlab.model.impact import Impact, is_plain, paper_impact
 from impactlab.model.parameters import Value, flatten, with_values
 from impactlab.model.quantities import amount, time
 from impactlab.solve import solve
-from impactlab.solver import LUMPED_MODELS
+from impactlab.solver import LUMPED_MODELS, RESISTANCES
 from impactlab.study.schema.declarations import ImpactStudy
 
 _MODELS = ("euler_bernoulli", "timoshenko", "spring_mass")  # in the order of tables and figures
@@ -43,8 +43,9 @@ class Case:
 
 
 def beam_models(impact: Impact) -> tuple[str, ...]:
-    """Return the models of the beam that have such ends, foundation and place of the strike."""
-    lumped = is_plain(impact) and impact.beam.foundation_stiffness == 0.0
+    """Return the models of the beam that have such ends, damping, foundation and place."""
+    resisted = any(getattr(impact.beam, name) > 0.0 for name in RESISTANCES)
+    lumped = is_plain(impact) and not resisted
     return tuple(name for name in _MODELS if lumped or name not in LUMPED_MODELS)
 
 

@@ -30,10 +30,10 @@ from impactlab.model.case_table import case_table
 from impactlab.model.checks import column, positive
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
-from impactlab.model.impact import DAMPED_BEAM, OTHER_SECTION, Impact, paper_impact
+from impactlab.model.impact import OTHER_SECTION, RATIO_DAMPED_BEAM, Impact, paper_impact
 from impactlab.model.parameters import with_values
 from impactlab.solve import solve as solve_cases
-from impactlab.solver import BEAM_MODELS, DAMPINGS, FLOW_LAWS, SUPPORTS
+from impactlab.solver import BEAM_MODELS, FLOW_LAWS, SUPPORTS
 from impactlab.solver.jit import SOURCES_HASH
 from impactlab.solver.types import CASE
 from impactlab.study.shard import Array, Columns
@@ -97,8 +97,8 @@ def _refuse_beams(records: Array) -> None:
     """Raise ValueError where a beam is none of the 3-D FE model's."""
     if records["beam_shape"].any():
         raise ValueError(f"beam_model = {SOLID!r}: must be another one {OTHER_SECTION}")
-    if any(records[name].any() for name in DAMPINGS):
-        raise ValueError(f"beam_model = {SOLID!r}: must be {DAMPED_BEAM}")
+    if records["damping_ratio"].any():
+        raise ValueError(f"beam_model = {SOLID!r}: must be {RATIO_DAMPED_BEAM}")
     if records["beam_flow_law"].any():
         raise ValueError(f"beam_model = {SOLID!r}: hardens linearly: take beam_flow_law out")
     if np.any(records["strikes"] > 1) or records["further"].any():

@@ -21,13 +21,8 @@ _EXAMPLE = "[{strike_position: 0.25, velocity: 3 m/s, delay: 0.5 ms}]"
 _EXPECTED = (
     f"must be a list of spheres, 1 to {SPHERES}, as {_EXAMPLE}, or as text '0.25 3 0.0005' in SI"
 )
-PLACE_OF_ITS_OWN = "must have a place of its own each: strikes and strike_interval repeat a strike"
+PLACE_OF_ITS_OWN = "must have a place of its own each: strikes repeat a strike"
 """Why two spheres cannot strike one node."""
-_PRESTRESSED = (
-    "must be ignored with further_spheres, for the kink that dents leave is that of one of them: "
-    "change it, or leave them out"
-)
-"""Why a contact's prestress is that of one sphere."""
 
 
 def sphere_rows(spheres: Any) -> tuple[tuple[float, ...], ...]:
@@ -79,16 +74,10 @@ def spheres_text(impact: Any) -> str | None:
     lone = len(set(places)) == len(places) and not np.isin(impact.strike_position, places).any()
     require(lone, *field, PLACE_OF_ITS_OWN)
     end = "with further_spheres: change it, or leave them out"
-    needs: tuple[tuple[str, str, Any, Any, str], ...] = (
-        ("Impact", "beam_model", impact, WAVE_MODELS, " or ".join(WAVE_MODELS)),
-        ("Impact", "load", impact, ("point",), "point"),
-        ("Impact", "strikes", impact, (1,), "1"),
-    )
-    for owner, name, node, holds, needed in needs:
-        value = getattr(node, name)
-        require(np.isin(value, holds), owner, name, value, f"must be {needed} {end}")
-    ignored = np.equal(impact.contact_prestress, "ignored")
-    require(ignored, "Impact", "contact_prestress", impact.contact_prestress, _PRESTRESSED)
+    model, needed = impact.beam_model, f"must be {' or '.join(WAVE_MODELS)} {end}"
+    require(np.isin(model, WAVE_MODELS), "Impact", "beam_model", model, needed)
+    interval = impact.strike_interval
+    require(interval is None, "Impact", "strike_interval", interval, f"must be left out {end}")
     return ", ".join(" ".join(map(repr, row)) for row in rows)
 
 

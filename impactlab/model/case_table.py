@@ -54,6 +54,8 @@ MODAL_DAMPING = (
 """End of the message that refuses it in leapfrog."""
 TOO_SOON = "must be at least the duration, which is simulated after every strike: change either"
 """Why strikes cannot follow each other so soon."""
+MODAL_PATCH = "must be point with further_spheres and scheme: modal: change one of these"
+"""Why further spheres cannot press circles there."""
 NO_INTERVAL = "has no effect with one strike: take it out, or set more strikes"
 """Why there is nothing between strikes."""
 _LONGEST = 20.0
@@ -112,6 +114,7 @@ def case_table(
         ("strikes", repeated & _is_long_on_foundation(cases), STIFF_FOUNDATION),
         ("strike_interval", repeated & (interval > 0.0) & (interval < duration), TOO_SOON),
         ("strike_interval", ~repeated & (interval > 0.0) & (not varied), NO_INTERVAL),
+        ("load", _presses_modes(cases), MODAL_PATCH),
         (
             "damping_ratio",
             (cases["damping_ratio"] > 0.0) & (cases["scheme"] != SCHEMES.index("modal")),
@@ -140,6 +143,12 @@ def _is_long_on_foundation(cases: Any) -> Any:
     square = np.sqrt(cases["foundation_stiffness"] / (4.0 * metal * cases["rotary_inertia"]))
     lengths = cases["beam_span"] * np.sqrt(square)
     return (cases["scheme"] != SCHEMES.index("modal")) & (lengths > _LONGEST)
+
+
+def _presses_modes(cases: Any) -> Any:
+    """Return whether circles of several contacts press the modes."""
+    modal = (cases["further"] > 0) & (cases["scheme"] == SCHEMES.index("modal"))
+    return modal & (cases["load"] == LOADS.index("contact_patch"))
 
 
 def _check_further(cases: np.ndarray[Any, Any], run: str, first_run: int) -> None:

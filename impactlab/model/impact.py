@@ -18,10 +18,10 @@ from impactlab.model.quantities import SI, Quantity, engineering
 from impactlab.solver import (
     BEAM_MODELS,
     COMPLIANCES,
-    DAMPINGS,
     FLOW_LAWS,
     LOADS,
     PRESTRESSES,
+    RAYLEIGH,
     WAVE_MODELS,
 )
 
@@ -42,10 +42,14 @@ SPRUNG_BEAM = (
 )
 """End of messages on what elastic ends cannot have."""
 DAMPED_BEAM = (
-    f"{' or '.join(WAVE_MODELS)} with {', '.join(DAMPINGS[:-1])} or {DAMPINGS[-1]}: change it, "
-    "or set these to 0"
+    f"{' or '.join(MODELS_ON_SPRINGS)} with {' or '.join(RAYLEIGH)}: change it, or set these to 0"
 )
-"""The same, of what damps the beam."""
+"""The same, of Rayleigh's damping of the beam."""
+RATIO_DAMPED_BEAM = (
+    f"{' or '.join(WAVE_MODELS)} with damping_ratio: change it, or set that to 0; "
+    f"{' and '.join(RAYLEIGH)} damp any of {', '.join(MODELS_ON_SPRINGS)}"
+)
+"""The same, of one ratio for all modes."""
 FOUNDED_BEAM = (
     f"{' or '.join(MODELS_ON_SPRINGS)} with foundation_stiffness: change it, or set that to 0"
 )
@@ -117,9 +121,10 @@ class Impact:
     further_spheres : str or sequence of mappings, optional
         Further spheres like `sphere`, at most 8: the `strike_position` of each, which no other has,
         its `velocity`, and its `delay` (by default 0), the time from the first sphere's touch to
-        its own; or rows of these in SI. Scalar responses are those of the first sphere. They need
-        a beam model whose nodes move, one strike, a point load and no `contact_prestress`
-        (solver/several_spheres.py). Kept as text, "0.25 3.0 0.0005".
+        its own; or rows of these in SI. Scalar responses are those of the first sphere. With
+        several strikes all come again in each. They need a beam model whose nodes move and no
+        `strike_interval`, and by scheme "modal" a point load (solver/several_spheres.py). Kept as
+        text, "0.25 3.0 0.0005".
 
     Raises
     ------
@@ -194,9 +199,11 @@ class Impact:
         require(sound, "Impact", "beam_model", self.beam_model, f"must be {SPRUNG_BEAM}")
         sound = on_springs | np.equal(beam.foundation_stiffness, 0.0)
         require(sound, "Impact", "beam_model", self.beam_model, f"must be {FOUNDED_BEAM}")
-        damped = sum(np.greater(getattr(beam, field), 0.0) for field in DAMPINGS)
-        sound = among(self.beam_model, WAVE_MODELS) | np.equal(damped, 0)
+        damped = sum(np.greater(getattr(beam, field), 0.0) for field in RAYLEIGH)
+        sound = on_springs | np.equal(damped, 0)
         require(sound, "Impact", "beam_model", self.beam_model, f"must be {DAMPED_BEAM}")
+        sound = among(self.beam_model, WAVE_MODELS) | np.equal(beam.damping_ratio, 0.0)
+        require(sound, "Impact", "beam_model", self.beam_model, f"must be {RATIO_DAMPED_BEAM}")
         sound = np.not_equal(beam.shape, "laminate") | np.not_equal(self.beam_model, "von_karman")
         require(sound, "Impact", "beam_model", self.beam_model, STRETCHED_LAYERS)
         object.__setattr__(self, "further_spheres", spheres_text(self))

@@ -26,7 +26,9 @@ SUPPORTS = ("pinned", "clamped", "free", "elastic", "roller")
 """What holds an end of the beam; the index is the kernels' switch, in which a roller is pinned."""
 AXIAL_SUPPORTS = ("pinned", "clamped")
 """Supports that hold the axis."""
-DAMPINGS = ("mass_damping", "stiffness_damping", "damping_ratio")
+RAYLEIGH = ("mass_damping", "stiffness_damping")
+"""Rayleigh's damping of the beam: fields of beams and of the case table."""
+DAMPINGS = (*RAYLEIGH, "damping_ratio")
 """What damps the beam: fields of beams and of the case table."""
 RESISTANCES = (*DAMPINGS, "foundation_stiffness")
 """What resists the beam's motion beside bending: fields of beams and of the case table."""

@@ -16,7 +16,6 @@ from impactlab.solver import (
     RESISTANCES,
     euler_bernoulli,
     flow_stress,
-    kink,
     lumped,
     modal,
     outputs,
@@ -43,6 +42,7 @@ from impactlab.solver.section import FibreSection, Room, cut_section, make_room,
 from impactlab.solver.several_spheres import with_spheres
 from impactlab.solver.stability import discretise, grid_of, struck_node
 from impactlab.solver.state import BeamModel, State
+from impactlab.solver.strikes import departure, resting, resting_once
 from impactlab.solver.types import CONTACT_PATCH, MODAL, Array, Record
 
 WORST_ENERGY_ERROR = 0.05
@@ -86,63 +86,9 @@ def _keep_profiles(
             peeq[r, i, j] = state.plastic.peeq[node, j]
 
 
-def _rest(model: BeamModel) -> Callable[..., int]:
-    """Return a function that puts the beam to rest after a strike, unless it goes on moving."""
-    settle, lift, rests_twice = model.settle, model.lift, model.rests_twice
-
-    @compiled
-    def rest(
-        case: Record,
-        answer: Record,
-        contact: Record,
-        events: Record,
-        series: Array,
-        state: State,
-        strike: int,
-        now: int,
-    ) -> int:
-        """Fill in the row of outputs.SERIES, if any; return which row of beam.w is the next.
-
-        now: the last row of the strike.
-        """
-        row, last = 1 - now, strike == case.strikes - 1
-        if settle is not None and (last or case.strike_interval == 0.0):
-            settle(state)
-            if rests_twice is not None and rests_twice(state):
-                answer.remarks |= outputs.SECOND_REST
-            events.v_mid, row = 0.0, int(np.int64(0))
-        elif responses.sphere_leaves(events):  # on as it was, beyond the kink
-            kink.straighten(state.beam.w, state.grid, -contact.kink)
-        pair, section, grid, beam, plastic = state[:5]
-        dent, w = contact.delta_r, beam.w[row, grid.mid] - kink.height(grid, contact.kink)
-        if lift is not None:
-            dent += lift(state, contact, 0.0)
-        if strike < series.shape[0]:
-            _, yielded = plastic_energy(plastic, section, grid)
-            responses.read_strike(series[strike], dent, w, yielded, case, events, contact, pair)
-        if last:
-            kink.straighten(beam.w, grid, contact.kink)
-        return row
-
-    return rest
-
-
-def _rest_single(rest: Callable[..., int]) -> Callable[..., None]:
-    """Return a function that puts a beam to rest after its only strike, where that is kept."""
-
-    @compiled
-    def rest_single(
-        case: Record, answer: Record, contact: Record, events: Record, series: Array, state: State
-    ) -> None:
-        if case.strikes == 1 and series.shape[0] > 0:
-            rest(case, answer, contact, events, series, state, 0, 0)
-
-    return rest_single
-
-
 def _run(model: BeamModel, extended: bool, rest: Callable[..., int]) -> Callable[..., int]:
-    """Return a function that solves a case; rest: as _rest returns it, extended: see _kernel."""
-    march, lift = time_loop(model, extended), model.lift
+    """Return a function that solves a case; rest: of `resting`, extended: see _kernel."""
+    march, lift, leaves = time_loop(model, extended), model.lift, departure(model)
     largest_deflection = None if model.flight is None else model.flight.largest
 
     @inlined
@@ -159,7 +105,7 @@ def _run(model: BeamModel, extended: bool, rest: Callable[..., int]) -> Callable
         """Solve a case from rest, and fill in its answer; see march for what is returned."""
         now = int(np.int64(0))
         for strike in range(case.strikes):
-            if strike > 0 and not responses.sphere_leaves(events):
+            if strike > 0 and not leaves(state, events):
                 answer.status = outputs.EARLIER_STRIKE_UNFINISHED
                 return now
             interval = 0
@@ -229,8 +175,8 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     make, renew, take, deflect = model.make, model.renew, model.take, model.deflect
     join, read = (None, None) if model.further is None else model.further[:2]
     divide = _division(join is not None)
-    rest = _rest(model)
-    run, rest_single = _run(model, extended, rest), _rest_single(rest)
+    rest = resting(model)
+    run, rest_single = _run(model, extended, rest), resting_once(rest)
     of_fibres = make_room, _section_at_rate if extended else cut_section
     make_section_room, cut = model.section or of_fibres
 

@@ -68,6 +68,13 @@ def height(grid: BeamGrid, kink: float) -> float:
 
 
 @compiled
+def height_of(grid: BeamGrid, kink: float, i: int) -> float:
+    """Return how far a kink at the struck node (rad) raises node i of the whole beam (m)."""
+    left = left_share(grid) * kink
+    return float(min(left * (i - 1), (kink - left) * (grid.stop - i)) * grid.dx)
+
+
+@compiled
 def bend_back(beam: BeamState, now: int, psi: Array, grid: BeamGrid, growth: float) -> None:
     """Let the beam keep its place while its kink grows by so much (rad)."""
     left = left_share(grid) * growth

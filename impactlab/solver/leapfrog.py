@@ -94,6 +94,8 @@ def _touch_down(model: BeamModel) -> Callable[..., tuple[float, float]]:
     """Return a function that begins a strike."""
     beam_energy, mid_curvature, sag = model.energy, model.curvature, model.sag
     fast, land = model.flight is not None, None if model.flight is None else model.flight.land
+    rise = None if model.further is None else model.further.rise
+    again = None if model.further is None else model.further.again
 
     @compiled
     def touch_down(
@@ -109,6 +111,9 @@ def _touch_down(model: BeamModel) -> Callable[..., tuple[float, float]]:
             return 0.0, 0.0
         pair, section, grid, beam, plastic = state[:5]
         w_mid = beam.w[now, grid.mid] - kink.height(grid, contact.kink)
+        if rise is not None and again is not None:
+            w_mid -= rise(state)
+            again(state, strike)
         events.w = events.w_before = events.w_max = w_mid
         w_s = w_mid + contact.delta_r
         if pair.bending != 0.0:
@@ -249,6 +254,7 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
     move_beam, mid_curvature, spread = model.step, model.curvature, model.spread
     flight_stride, fly = model.flight_stride, None if model.flight is None else _leaps(model.flight)
     touch, touch_down, imbalance = contact_of(model, extended), _touch_down(model), _audit(model)
+    rise = None if model.further is None else model.further.rise
 
     @inlined
     def march(
@@ -281,6 +287,8 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
         while step <= end:
             t, u_mid = step * dt, u[mid]
             w_mid = w[now, mid] - kink.height(grid, contact.kink)
+            if rise is not None:
+                w_mid -= rise(state)
             F, approach, delta = touch(case, state, contact, events, now, w_s - w_mid - ahead, t)
             v_after = v_s + dt * (case.gravity - F * per_mass)
             event_tracker.update_events(events, approach, contact.delta_r, w_mid, F, v_s, t, dt)

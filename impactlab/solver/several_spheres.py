@@ -9,122 +9,34 @@ Its contact is that of the time loop, in whose grid its node is the struck one: 
 a strip's bending across are those there. A delay falls between two steps: w there is that of a
 straight line, and the sphere moves as without a force until the later of them, an error of second
 order in the step. Spheres are alike and undented, and their contacts know of each other through the
-beam alone.
+beam alone. Each kink (kink.py) is of one contact, and the beam deflects beyond all of them. In
+repeated strikes all spheres come again, each to its dent.
 
 The balance of energy has what each sphere has lost since its touch, and what its contact holds.
 Leaps (flight.py) are made until the first of these spheres comes.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
-
-from impactlab.solver import event_tracker
+from impactlab.solver import event_tracker, kink
 from impactlab.solver.beam import BeamGrid
-from impactlab.solver.contact.history import CONTACT, energies
-from impactlab.solver.event_tracker import EVENTS
-from impactlab.solver.jit import allocating, compiled, inlined
+from impactlab.solver.contact.history import energies
+from impactlab.solver.contact_patch import contact_radius
+from impactlab.solver.jit import compiled, inlined
 from impactlab.solver.leapfrog import contact_of, fill_samples
-from impactlab.solver.outputs import DIVERGED, ENERGY_OUT_OF_BALANCE, STRUCK_NEAR_END, blank
-from impactlab.solver.responses import read_contact, read_inputs, read_rebound
+from impactlab.solver.outputs import (
+    DIVERGED,
+    EARLIER_STRIKE_UNFINISHED,
+    ENERGY_OUT_OF_BALANCE,
+    STRUCK_NEAR_END,
+)
+from impactlab.solver.responses import read_contact, read_inputs, read_rebound, sphere_leaves
+from impactlab.solver.sphere_table import Table, join
 from impactlab.solver.state import BeamModel, Flight, FurtherSpheres, State
-from impactlab.solver.types import Array, Record, record
+from impactlab.solver.types import CONTACT_PATCH, Array, Record
 
-MOTION = record("velocity delay v v_before w w_0 u_before face", integers="step begun")
-"""Of a sphere: velocity (m/s) at first touch, delay (s); v, v_before (m/s): after and before the
-step; w (m): displacement after it, counted as the beam's deflection, w_0: at first touch. u_before
-(m): u of its node before the step, face: where the struck face was a step ago, before the touch.
-step: number of steps made; begun: whether it has touched the beam."""
-
-_WHOLE_RUN = DIVERGED | ENERGY_OUT_OF_BALANCE
-
-
-class Table(NamedTuple):
-    """K further spheres in each of R runs.
-
-    fastest: the cases, each with the spheres that come and one that asks for their step, (R,).
-    motions, contacts, events: records to work in; answers: RESPONSE records, filled, all (R, K).
-    samples: those of kernels.py, filled, (R, K, 5, S), of which the force is of use. modes:
-    the table of model/beam_modes.py that all runs share, or empty.
-    """
-
-    fastest: Array
-    motions: Array
-    contacts: Array
-    events: Array
-    answers: Array
-    samples: Array
-    modes: Array
-
-
-class Further(NamedTuple):
-    """The state of a run besides the beam's: beam, that of its model, and spheres (K,).
-
-    nodes: theirs; forces: on them in this step (N); surplus: what the model's energy then has too
-    much (J), (1,). run: its row of `fastest`; steps: number of its steps.
-    """
-
-    beam: Any
-    fastest: Array
-    run: int
-    motions: Array
-    contacts: Array
-    events: Array
-    samples: Array
-    nodes: Array
-    forces: Array
-    surplus: Array
-    steps: int
-
-
-def make_table(cases: Array, samples: int) -> Table:
-    """Return room for the further spheres of these cases, of which all have as many."""
-    count = int(cases["further"][0])
-    rows = cases["further_spheres"][:, :count]
-    fastest, motions = cases.copy(), np.zeros(rows.shape[:2], MOTION)
-    motions["velocity"], motions["delay"] = rows[..., 1], rows[..., 2]
-    come = motions["delay"] <= cases["duration"][:, np.newaxis]
-    fastest["further"] = come.sum(axis=1)
-    # one contact takes at most the energy of all spheres
-    squares = cases["velocity"] ** 2 + np.sum(come * rows[..., 1] ** 2, axis=1)
-    fastest["velocity"] = np.where(come.any(axis=1), np.sqrt(squares), cases["velocity"])
-    ends = (come & np.isin(rows[..., 0], (0.0, 1.0))).any(axis=1)
-    fastest["strike_position"][ends] = 0.0  # half the mass to push
-    return Table(
-        fastest,
-        motions,
-        np.zeros(motions.shape, CONTACT),
-        np.zeros(motions.shape, EVENTS),
-        blank(motions.size).reshape(motions.shape),
-        np.zeros((*motions.shape, 5, samples)),
-        np.empty((0, 0)),
-    )
-
-
-@allocating  # what it returns counts its owners
-def _join(state: State, table: Table, r: int, case: Record) -> Further:
-    """Return the beam and the spheres of run r, before any touches it."""
-    grid, count = state.grid, table.motions.shape[1]
-    nodes = np.empty(count, dtype=np.int64)
-    for k in range(count):
-        contact, events = table.contacts[r, k], table.events[r, k]
-        nodes[k] = grid.first - 1 + int(case.further_spheres[k, 0] * (case.nodes - 1) + 0.5)
-        event_tracker.start(events, contact, 0)
-        events.contacts = events.touching = 0.0
-    return Further(
-        state.extra,
-        table.fastest,
-        r,
-        table.motions[r],
-        table.contacts[r],
-        table.events[r],
-        table.samples[r],
-        nodes,
-        np.zeros(count),
-        np.zeros(1),
-        round(case.duration / grid.dt),
-    )
+_WHOLE_RUN = DIVERGED | ENERGY_OUT_OF_BALANCE | EARLIER_STRIKE_UNFINISHED
 
 
 @inlined
@@ -139,6 +51,51 @@ def _beam_at(state: State, node: int) -> State:
     """Return the same with another struck node."""
     pair, section, grid, beam, plastic, extra = state
     return State(pair, section, BeamGrid(node, *grid[1:]), beam, plastic, extra.beam)
+
+
+@inlined
+def _deflection(state: State, now: int, i: int) -> float:
+    """Return the deflection (m) of node i, without the kinks that it counts from."""
+    extra = state.extra
+    return float(
+        state.beam.w[now, i] - extra.rise[i] - kink.height_of(state.grid, extra.kink[0], i)
+    )
+
+
+@compiled
+def _raise(state: State, grid: BeamGrid, growth: float) -> None:
+    """Note that a kink at a grid's struck node has grown (rad)."""
+    for i in range(1, grid.stop + 1 if growth > 0.0 else 1):
+        state.extra.rise[i] += kink.height_of(grid, growth, i)
+
+
+@compiled
+def _rise(state: State) -> float:
+    return float(state.extra.rise[state.grid.mid])
+
+
+@compiled
+def _leave(state: State) -> bool:
+    for k in range(state.extra.motions.size):
+        if state.extra.motions[k].begun == 1 and not sphere_leaves(state.extra.events[k]):
+            return False
+    return True
+
+
+@compiled
+def _again(state: State, strike: int) -> None:
+    extra = state.extra
+    extra.surplus[0] = 0.0
+    for k in range(extra.motions.size):
+        sphere, contact, events = extra.motions[k], extra.contacts[k], extra.events[k]
+        sphere.step = sphere.begun = 0
+        sphere.ahead = 0.0
+        stored, lost = energies(contact, state.pair, contact.delta_r)
+        sphere.spent = stored + lost
+        event_tracker.start(events, contact, strike)
+        events.contacts = events.touching = 0.0
+        for j in range(extra.samples.shape[2]):
+            extra.samples[k, 0, j] = 0.0
 
 
 @compiled
@@ -156,14 +113,15 @@ def _presses(model: BeamModel) -> Any:
     @inlined
     def begin(state: State, k: int, now: int, t: float) -> None:
         """Let a sphere touch the beam t (s) before this step, or note where its struck face is."""
-        pair, section, grid, beam, plastic = state[:5]
+        pair, section, grid, _, plastic = state[:5]
         i, dt, gravity = state.extra.nodes[k], grid.dt, state.extra.fastest[state.extra.run].gravity
         sphere, contact, events = (
             state.extra.motions[k],
             state.extra.contacts[k],
             state.extra.events[k],
         )
-        face, shift = beam.w[now, i], 0.0
+        w = _deflection(state, now, i)
+        face, shift = w + contact.delta_r, 0.0
         if sag is not None:
             face += sag(_beam_at(state, i))
         if pair.bending != 0.0:
@@ -175,7 +133,7 @@ def _presses(model: BeamModel) -> Any:
             sphere.w_0 = face - t / dt * (face - sphere.face)
             sphere.w = sphere.w_0 + sphere.velocity * t + 0.5 * gravity * t * t
             sphere.v = sphere.velocity + gravity * (t - 0.5 * dt)
-            events.w = events.w_before = events.w_max = beam.w[now, i]
+            events.w = events.w_before = events.w_max = w
             if sphere.w > face or t == 0.0:  # else the beam moves away
                 events.contacts = events.touching = 1.0
         sphere.face = face
@@ -185,7 +143,7 @@ def _presses(model: BeamModel) -> Any:
         """Find the force of a sphere where a step begins, and move the sphere."""
         extra, dt = state.extra, state.grid.dt
         sphere, contact, events = extra.motions[k], extra.contacts[k], extra.events[k]
-        case, step, w = extra.fastest[extra.run], sphere.step, state.beam.w[now, extra.nodes[k]]
+        case, step = extra.fastest[extra.run], sphere.step
         t = step * dt - sphere.delay
         sphere.step = step + 1
         if sphere.begun == 0:
@@ -193,7 +151,9 @@ def _presses(model: BeamModel) -> Any:
         if t < 0.0:
             return
         before, place = events.F, _beam_at(state, extra.nodes[k])
-        F, approach, _ = touch(case, place, contact, events, now, sphere.w - w, t)
+        w, bent = _deflection(state, now, extra.nodes[k]), contact.kink
+        F, approach, _ = touch(case, place, contact, events, now, sphere.w - w - sphere.ahead, t)
+        _raise(state, place.grid, contact.kink - bent)
         sphere.v_before = sphere.v
         event_tracker.update_events(events, approach, contact.delta_r, w, F, sphere.v, t, dt)
         sphere.v += dt * (case.gravity - F / case.sphere_mass)
@@ -227,6 +187,9 @@ def _reads(model: BeamModel) -> Any:
             place = (extra.nodes[k] - grid.first + 1) * grid.dx
             near = min(place, case.beam_span - place) < case.beam_depth
             answer.remarks |= other.remarks | (STRUCK_NEAR_END if near else 0)
+        for i in range(extra.rise.size):  # of the deflection beyond kinks, that of the beam
+            state.beam.w[0, i] -= extra.rise[i]
+            state.beam.w[1, i] -= extra.rise[i]
 
     return read
 
@@ -288,33 +251,26 @@ def _touched(model: BeamModel) -> dict[str, Any]:
     def lift(state: State, contact: Record, F: float) -> float:
         return plain_lift(_beam(state), contact, F)
 
-    return {"sag": sag, "beneath": beneath, "lift": lift}
-
-
-def with_spheres(model: BeamModel) -> BeamModel:
-    """Return a model of the beam that moves further spheres, too.
-
-    Without prestress, whose kink is that of one contact.
-    """
-    model = model._replace(moments=None, bend_back=None)
-    move_beam, plain_energy, plain_curvature = model.step, model.energy, model.curvature
-    plain_deflect, plain_spread = model.deflect, model.spread
-    plain_take: Any = model.take
-    push: Any = model.push
-    press = _presses(model)
-
-    @inlined
-    def step(state: State, now: int, F: float) -> None:
-        extra, u = state.extra, state.beam.u
-        for k in range(extra.motions.size):
-            extra.motions[k].u_before = u[extra.nodes[k]]
-            press(state, k, now)
-        move_beam(_beam(state), now, F)
-        extra.surplus[0] = push(_beam(state), now, extra.nodes, extra.forces)
+    plain_moments, plain_bend_back = model.moments, model.bend_back
+    if plain_moments is None or plain_bend_back is None:
+        return {"sag": sag, "beneath": beneath, "lift": lift}
 
     @compiled
-    def curvature(state: State, now: int) -> float:
-        return plain_curvature(_beam(state), now)
+    def moments(state: State, now: int) -> tuple[float, float]:
+        return plain_moments(_beam(state), now)
+
+    @compiled
+    def bend_back(state: State, now: int, contact: Record, growth: float) -> None:
+        plain_bend_back(_beam(state), now, contact, growth)
+        state.extra.kink[0] = contact.kink
+
+    touched = {"sag": sag, "beneath": beneath, "lift": lift}
+    return touched | {"moments": moments, "bend_back": bend_back}
+
+
+def _energies(model: BeamModel) -> Any:
+    """Return the function of a model's energy, with that of further spheres."""
+    plain_energy = model.energy
 
     @compiled
     def energy(state: State, now: int, F: float, u_mid: float) -> float:
@@ -326,10 +282,58 @@ def with_spheres(model: BeamModel) -> BeamModel:
                 stored, lost = energies(extra.contacts[k], state.pair, events.delta)
                 fallen = sphere.w - dt * sphere.v - sphere.w_0
                 square = sphere.v_before * sphere.v - sphere.velocity * sphere.velocity
-                total += stored + lost
+                total += stored + lost - sphere.spent
                 total += case.sphere_mass * (0.5 * square - case.gravity * fallen)
                 events.v_s, events.v_mid = sphere.v_before, sphere.u_before / dt
         return total
+
+    return energy
+
+
+def _spreads(model: BeamModel) -> Any:
+    """Return a function that spreads the forces of further spheres, None of modes."""
+    plain_spread = model.spread
+    if model.flight is not None:
+        return None
+
+    @compiled
+    def spread_forces(state: State, now: int) -> None:
+        """Spread the forces over the circles of contact."""
+        extra, u = state.extra, state.beam.u
+        for k in range(extra.motions.size):
+            i, F, pushed = extra.nodes[k], extra.forces[k], u[extra.nodes[k]]
+            if F > 0.0:
+                a = contact_radius(extra.contacts[k], state.pair, F)
+                change, excess = plain_spread(_beam_at(state, i), now, F, a)
+                extra.motions[k].ahead += change
+                if excess != 0.0:  # the energy knows nothing of it, as of `surplus`
+                    extra.surplus[0] += 0.5 * F * (u[i] + change - pushed)
+
+    return spread_forces
+
+
+def with_spheres(model: BeamModel) -> BeamModel:
+    """Return a model of the beam that moves further spheres, too."""
+    move_beam, plain_curvature = model.step, model.curvature
+    plain_deflect, plain_spread = model.deflect, model.spread
+    plain_take: Any = model.take
+    push: Any = model.push
+    press, spread_forces, plain_settle = _presses(model), _spreads(model), model.settle
+
+    @inlined
+    def step(state: State, now: int, F: float) -> None:
+        extra, u = state.extra, state.beam.u
+        for k in range(extra.motions.size):
+            extra.motions[k].u_before = u[extra.nodes[k]]
+            press(state, k, now)
+        move_beam(_beam(state), now, F)
+        extra.surplus[0] = push(_beam(state), now, extra.nodes, extra.forces)
+        if spread_forces is not None and extra.fastest[extra.run].load == CONTACT_PATCH:
+            spread_forces(state, now)
+
+    @compiled
+    def curvature(state: State, now: int) -> float:
+        return plain_curvature(_beam(state), now)
 
     @compiled
     def deflect(state: State, now: int) -> None:
@@ -340,19 +344,24 @@ def with_spheres(model: BeamModel) -> BeamModel:
         return plain_spread(_beam(state), now, F, a)
 
     @compiled
+    def settle(state: State) -> None:
+        if plain_settle is not None:
+            plain_settle(_beam(state))
+
+    @compiled
     def take(extra: Any, table: Table) -> None:
         plain_take(extra, table.modes)
 
     return model._replace(
         step=step,
         curvature=curvature,
-        energy=energy,
+        energy=_energies(model),
         deflect=deflect,
         spread=spread,
-        settle=None,
+        settle=settle,
         flight=_leaps(model),
         take=None if plain_take is None else take,
         push=None,
-        further=FurtherSpheres(_join, _reads(model), _brought),
+        further=FurtherSpheres(join, _reads(model), _brought, _rise, _leave, _again),
         **_touched(model),
     )

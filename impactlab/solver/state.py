@@ -44,12 +44,17 @@ class FurtherSpheres(NamedTuple):
 
     join(state, table, r, case): State.extra of run r with them, from a table made outside. read(
     state, case, answer, answers): fill in their answers, and what they add to the run's. brought(
-    state): the kinetic energy (J) with which those came that have touched the beam.
+    state): the kinetic energy (J) with which those came that have touched the beam. rise(state):
+    how far their kinks raise the struck node (m). leave(state): whether all that came move away.
+    again(state, strike): let them come again, once so many strikes are over.
     """
 
     join: Callable[..., Any]
     read: Callable[..., None]
     brought: Callable[..., float]
+    rise: Callable[..., float]
+    leave: Callable[..., bool]
+    again: Callable[..., None]
 
 
 class BeamModel(NamedTuple):

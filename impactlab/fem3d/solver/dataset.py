@@ -12,7 +12,6 @@ from impactlab.fem3d.solver.evaluation import fields, plastic_responses, respons
 from impactlab.fem3d.solver.march import Energies, History, March, Progress
 from impactlab.fem3d.solver.mesh import Mesh, check_mesh, impact_mesh, plane_faces
 from impactlab.fem3d.solver.system import System, ThreadPool
-from impactlab.model.bodies import DAMPINGS
 from impactlab.model.checks import integer, positive
 from impactlab.model.contact_compliance import TIMOSHENKO_OPTIONS
 from impactlab.model.discretisation import Discretisation
@@ -138,6 +137,7 @@ OWN = {
     "contact_work": ("J", "work against overlaps in the contact, kept and lost"),
     "gravity_work": ("J", "work of gravity on the sphere"),
     "spring_energy": ("J", "energy of the springs of elastic ends and foundation"),
+    "damping_work": ("J", "work that the beam's damping took"),
     "element_size": ("m", "size of the elements about the contact"),
     "patch": ("m", "half the side of the square in which nodes are matched"),
     "number_of_elements": ("1", "elements of the part that is solved"),
@@ -161,7 +161,7 @@ IMPACT_PARAMETERS = [
     for name, entry in PARAMETERS.items()
     if entry.path[0] == "impact"
     and name not in ("contact", *TIMOSHENKO_OPTIONS, "beam_model", "load", "shear_coefficient")
-    and name not in (*SECTION, *DAMPINGS, "strike_interval", "further_spheres")
+    and name not in (*SECTION, "damping_ratio", "strike_interval", "further_spheres")
 ]
 """Parameters of an impact, without those of the beam models alone."""
 

@@ -106,9 +106,18 @@ def checked_patch(impact: Impact, element_size: float, patch: float | None) -> f
     return half
 
 
+def damped_step(step: float, beta: float) -> float:
+    """Return a step (s) as far from instability as `step` is without damping of the stiffness.
+
+    beta: in s, see damping.py.
+    """
+    return step if beta == 0.0 else step**2 / (beta + math.hypot(beta, step))
+
+
 ONE_POINT_SECONDS, FULL_SECONDS = 170e-9, 350e-9
 """Time per element and step on one core, nodes included, on meshes that the caches of a busy
 machine do not hold; a small mesh takes half."""
+_DAMPED = 1.7  # time with damping of the beam's stiffness, over that without
 _BYTES = 1000  # approximate memory per element, with its share of the nodes
 _ONE_POINT_BYTES, _FULL_BYTES, _NODE_BYTES = 700, 1600, 250
 
@@ -127,7 +136,7 @@ def estimate(mesh: Mesh, impact: Impact, *, duration: float) -> Cost:
     """Return the cost of `duration` (s) on `mesh`, from its smallest elements and measurements.
 
     The largest stable step is about that of a pressure wave over the shortest edge, or shorter
-    where springs are stiff.
+    where springs are stiff or the stiffness is damped.
     """
     # which import this module
     from impactlab.fem3d.solver.mesh import nodal_masses
@@ -145,10 +154,12 @@ def estimate(mesh: Mesh, impact: Impact, *, duration: float) -> Cost:
     springs, mass = springs_of(mesh, impact), nodal_masses(mesh, impact)
     sprung = np.max(springs.diagonal(len(mass)) / mass[:, np.newaxis])  # 1/s2
     step = min(stable) / np.sqrt(1.0 + 0.25 * sprung * min(stable) ** 2)
-    steps = int(np.ceil(duration / float(0.9 * step)))
+    beta = impact.beam.stiffness_damping
+    steps = int(np.ceil(duration / damped_step(float(0.9 * step), beta)))
     full = int(mesh.full.sum())
     one_point = len(mesh.elements) - full
     seconds = steps * (one_point * ONE_POINT_SECONDS + full * FULL_SECONDS)
+    seconds *= 1.0 if beta == 0.0 else _DAMPED
     memory = one_point * _ONE_POINT_BYTES + full * _FULL_BYTES + len(mesh.nodes) * _NODE_BYTES
     return Cost(len(mesh.elements), steps, seconds, memory)
 
@@ -167,7 +178,8 @@ def least_cost(
     far = beam.span / parts * beam.section.area / max(beam.depth / 6.0, size) ** 3
     near = 8.0 / parts * (half / size) ** 3
     fastest = max(math.sqrt(steel.youngs_modulus / density) for steel, density in _metals(impact))
-    steps = int(duration * fastest / size) + 1
+    beta = beam.stiffness_damping
+    steps = int(duration / damped_step(size / fastest, beta)) + 1
     seconds = steps * (near * FULL_SECONDS + far * ONE_POINT_SECONDS)
     return Cost(int(near + far), steps, seconds, int(near + far) * _BYTES)
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.fem3d.solver.elements import DISSIPATED, HOURGLASS_WORK, WORK
-from impactlab.fem3d.solver.estimates import largest_patch
+from impactlab.fem3d.solver.estimates import damped_step, largest_patch
 from impactlab.fem3d.solver.impulses import PARTS
 from impactlab.fem3d.solver.system import System, corner_volumes, critical_step
 from impactlab.model.impact import Impact
@@ -37,7 +37,7 @@ class Energies(NamedTuple):
 
     strain_work: of the stresses in the elements, kept and dissipated. plastic_work: dissipated of
     it. hourglass_work: against hourglassing. contact_work: on pairs that overlap, kept and lost.
-    spring_energy: kept by elastic ends and foundation.
+    spring_energy: kept by elastic ends and foundation. damping_work: that the beam's damping took.
     """
 
     time: float
@@ -48,12 +48,14 @@ class Energies(NamedTuple):
     contact_work: float
     gravity_work: float
     spring_energy: float
+    damping_work: float
 
     @property
     def balance(self) -> float:
         """Return the energy that stays constant."""
         energy = self.kinetic_energy + self.strain_work + self.hourglass_work
-        return energy + self.contact_work + self.spring_energy - self.gravity_work
+        energy = energy + self.contact_work + self.spring_energy - self.gravity_work
+        return energy + self.damping_work
 
 
 @dataclass
@@ -93,7 +95,9 @@ class March:
     def __init__(self, system: System, impact: Impact) -> None:
         """Start at first touch."""
         self.system, self.impact, self.history = system, impact, History()
-        self._step = SAFETY * critical_step(system)
+        self._beta = impact.beam.stiffness_damping
+        self._undamped = SAFETY * critical_step(system)
+        self._step = damped_step(self._undamped, self._beta)
         self._volumes = np.empty(system.mesh.elements.shape)
         self._shortest = corner_volumes(system.mesh.elements, system.x, self._volumes)
         self._dt = self._step
@@ -143,9 +147,9 @@ class March:
         gravity = self.impact.sphere.total_mass * self.impact.gravity * moment.sphere
         work, plastic, hourglass = worked[[WORK, DISSIPATED, HOURGLASS_WORK]].tolist()
         contact = mesh.copies * self._pushed
-        history.energies.append(
-            Energies(moment.time, kinetic, work, plastic, hourglass, contact, gravity, springs)
-        )
+        damped = 0.0 if system.damping is None else mesh.copies * system.damping.work
+        worked = work, plastic, hourglass, contact, gravity, springs, damped
+        history.energies.append(Energies(moment.time, kinetic, *worked))
         apart = system.x[mesh.pairs[:, 0]] - system.x[mesh.pairs[:, 1]]
         slid = np.hypot(*apart[system.closing > 0.0, :2].T)
         slide = float(np.max(slid, initial=0.0)) / mesh.element_size
@@ -180,6 +184,7 @@ class March:
         self._sphere += self._dt * self._velocity
         self._time += self._dt
         system.strain(self._dt)
+        system.drag(self._dt)
         self._velocity_dt = self._dt
 
     def _wrong(self) -> str:
@@ -203,6 +208,7 @@ class March:
                 f"{ratio[worst]:.2g} of its corner volume at {self._time:.4g} s: take larger "
                 "elements or a lower velocity"
             )
-        shorter = self._step * min(1.0, shortest / self._shortest)
+        ratio = min(1.0, shortest / self._shortest)
+        shorter = damped_step(self._undamped * ratio, self._beta)
         self._velocity_dt, self._dt = 0.5 * (self._dt + shorter), shorter
         return ""

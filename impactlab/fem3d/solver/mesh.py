@@ -21,7 +21,6 @@ from impactlab.fem3d.solver.estimates import (
 )
 from impactlab.fem3d.solver.impulses import bulges
 from impactlab.fem3d.solver.lattice import Integers, brick, graded, mirrored, quarter_sphere
-from impactlab.model.bodies import DAMPINGS
 from impactlab.model.checks import positive
 from impactlab.model.impact import Impact
 from impactlab.types import Floats
@@ -139,7 +138,6 @@ def _refuse_other_beams(impact: Impact) -> None:
     beam = impact.beam
     plain_values: list[tuple[Any, str, Any]] = [
         (beam, "shape", "rectangle"),
-        *((beam, field, 0.0) for field in DAMPINGS),
         (impact, "strikes", 1),
         (impact, "further_spheres", None),
     ]
@@ -148,8 +146,13 @@ def _refuse_other_beams(impact: Impact) -> None:
             advice = "leave it out" if plain is None else f"set it to {plain!r}"
             raise ValueError(
                 f"{type(owner).__name__}.{field} = {value!r}: the 3-D model is of a rectangular "
-                f"beam without damping, struck once by one sphere: {advice}"
+                f"beam struck once by one sphere: {advice}"
             )
+    if beam.damping_ratio > 0.0:
+        raise ValueError(
+            f"Beam.damping_ratio = {beam.damping_ratio!r}: is of modes, which the 3-D model does "
+            "not have: set it to 0, and state mass_damping and stiffness_damping"
+        )
     if not 0.0 < impact.strike_position < 1.0:
         raise ValueError(
             f"Impact.strike_position = {impact.strike_position!r}: the 3-D model needs beam on "

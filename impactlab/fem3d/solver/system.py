@@ -14,6 +14,7 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from impactlab.fem3d.solver.compiler import Array, compiled, inlined
+from impactlab.fem3d.solver.damping import damping_of, sum_rows
 from impactlab.fem3d.solver.elements import FULL_ROWS, ROWS, add_forces, blocks_of
 from impactlab.fem3d.solver.hexahedron import SCRATCH, Vector, W, cross, dot
 from impactlab.fem3d.solver.impulses import RULE, close_gaps
@@ -212,7 +213,8 @@ class System:
     """Nodes with positions x (n, 3) in m and velocities v (n, 3) in m/s, half a step apart.
 
     groups: the elements. springs: see springs.py. mass: (n,) in kg. closing: (p,) distances in m by
-    which the last step parted pairs, 0 where they do not touch. All arrays are changed in place.
+    which the last step parted pairs, 0 where they do not touch. damping: of the beam, None without.
+    All arrays are changed in place.
     """
 
     def __init__(self, mesh: Mesh, impact: Impact, pool: ThreadPool) -> None:
@@ -233,6 +235,16 @@ class System:
         for axis, held in enumerate((mesh.symmetry_x, mesh.symmetry_y, mesh.support)):
             self.inverse_mass[held, axis] = 0.0
         self.inverse_mass[mesh.clamped] = 0.0
+        self.damping = damping_of(mesh, impact.beam, self.mass, self.inverse_mass)
+        if self.damping is not None:
+            self._first_rows = self.assembly.slots[self.assembly.starts[:-1]]
+            self._drag_rows = np.zeros_like(self.forces)
+            parts = zip(mesh.groups(), self.groups, self.assembly.of_groups, strict=True)
+            self._dragged = [
+                (group, rows, np.zeros_like(group.state), np.zeros_like(group.works))
+                for (body, *_), group, rows in parts
+                if body == BEAM
+            ]
         sphere = np.unique(mesh.elements[mesh.body == SPHERE])
         self.v[sphere, 2] = -impact.velocity
         self.pull = np.zeros(len(mesh.nodes))
@@ -256,22 +268,52 @@ class System:
 
         self.pool.run(work, MOST_THREADS)
 
+    def drag(self, dt: float) -> None:
+        """Set what the stiffness's damping takes of v, which has led to x in dt (s)."""
+        damping = self.damping
+        if damping is None or damping.beta == 0.0:
+            return
+
+        def work(thread: int, first: int, end: int) -> None:
+            scratch = self._scratch[thread]
+            for group, rows, *held in self._dragged:
+                metal = (damping.metal(group.metal, dt), None)
+                arrays = (group.elements.size, group.points == 8, *metal, group.nodes, rows)
+                state, works = held
+                moved = (self.x, self.v, dt, self._drag_rows)
+                add_forces((first, end), *arrays, state, group.past, works, *moved, scratch)
+
+        for _, _, state, _ in self._dragged:
+            state[:] = 0.0
+        self.pool.run(work, MOST_THREADS)
+        sum_rows(self.assembly.starts, self.assembly.slots, self._drag_rows, damping.drag)
+        place = self.springs.nodes, self.springs.axes
+        np.add.at(damping.drag, place, damping.beta * self.springs.stiffness * self.v[place])
+
     def move(self, velocity_dt: float, dt: float) -> tuple[float, float, float, bool]:
-        """Apply the elements' and springs' forces for velocity_dt (s), move the nodes by dt (s).
+        """Apply all forces for velocity_dt (s), the contact's included, move the nodes by dt (s).
 
         Returns what close_gaps does.
         """
+        damping, inverse_mass = self.damping, self.inverse_mass
+        if damping is not None:
+            self.forces[self._first_rows] += damping.drag
+            damping.begin(self.v, velocity_dt)
+            inverse_mass = damping.inverse_mass
         if self.springs.nodes.size:
             places = self._spring_rows, self.mesh.nodes, self.x
             add_spring_forces(*self.springs, *places, self.forces)
         rows = (self.assembly.starts, self.assembly.slots, self.forces)
-        moved = (*rows, self.inverse_mass, self.pull, self.x, self.v, velocity_dt, dt)
+        moved = (*rows, inverse_mass, self.pull, self.x, self.v, velocity_dt, dt)
         self.pool.run(lambda _, first, end: integrate((first, end), *moved), len(self.x))
         mesh = self.mesh
         contact = (mesh.faces, mesh.bulge, self._share, mesh.pairs, mesh.rim, mesh.normals)
-        return close_gaps(
-            RULE, *contact, self.inverse_mass, self.x, self.v, dt, self.approach, self.closing
+        answer: tuple[float, float, float, bool] = close_gaps(
+            RULE, *contact, inverse_mass, self.x, self.v, dt, self.approach, self.closing
         )
+        if damping is not None:
+            damping.end(self.v, velocity_dt)
+        return answer
 
 
 _TINY = 1e-12  # seconds of motion at about 1 m/s: strains stay far below 1

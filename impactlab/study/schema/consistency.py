@@ -15,7 +15,13 @@ from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
 from impactlab.model import impact
 from impactlab.model.bodies import sphere_rows
-from impactlab.model.case_table import MODAL_DAMPING, NO_INTERVAL, TOO_SOON, between_nodes
+from impactlab.model.case_table import (
+    MODAL_DAMPING,
+    MODAL_PATCH,
+    NO_INTERVAL,
+    TOO_SOON,
+    between_nodes,
+)
 from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTIONS
 from impactlab.model.parameters import PARAMETERS, SECTION, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
@@ -23,8 +29,8 @@ from impactlab.model.quantities import shown
 from impactlab.solver import (
     BEAM_MODELS,
     BENDING_MODELS,
-    DAMPINGS,
     LUMPED_MODELS,
+    RAYLEIGH,
     WAVE_MODELS,
 )
 from impactlab.solver.outputs import GROWING
@@ -251,8 +257,11 @@ def _resisted_beams(file: StudyFile, ends: Extremes) -> Reasons:
     """Check that what resists the motion of a beam has a model and a scheme."""
     sampling, grid = file.sampling, file.discretisation[0]
     models = set(values_of(sampling, "beam_model", file.impact.beam_model))
-    if any(ends[name][1] > 0.0 for name in DAMPINGS) and models - set(WAVE_MODELS):
+    damped = any(ends[name][1] > 0.0 for name in RAYLEIGH)
+    if damped and models - set(impact.MODELS_ON_SPRINGS):
         yield key_of("beam_model", sampling), f"must be {impact.DAMPED_BEAM}"
+    if ends["damping_ratio"][1] > 0.0 and models - set(WAVE_MODELS):
+        yield key_of("beam_model", sampling), f"must be {impact.RATIO_DAMPED_BEAM}"
     if ends["foundation_stiffness"][1] > 0.0 and models - set(impact.MODELS_ON_SPRINGS):
         yield key_of("beam_model", sampling), f"must be {impact.FOUNDED_BEAM}"
     schemes = values_of(sampling, "scheme", grid.scheme)
@@ -272,6 +281,14 @@ def _several_strikes(file: StudyFile, ends: Extremes) -> Reasons:
     spheres, key = sphere_rows(file.impact.further_spheres or ()), "impact.further_spheres"
     if spheres and file.discretisation[1] is not None:
         yield "discretisation.auto", "needs one sphere: state the discretisation"
+        return
+    loads = values_of(sampling, "load", file.impact.load)
+    if (
+        spheres
+        and "contact_patch" in loads
+        and "modal" in values_of(sampling, "scheme", grid.scheme)
+    ):
+        yield key_of("load", sampling), MODAL_PATCH
         return
     for place, _, _ in spheres:
         for nodes in map(int, values_of(sampling, "nodes", grid.nodes)):

@@ -61,6 +61,24 @@ def test_abaqus_cards(written, impact, moduli, parameters, data):
     assert [decks.numbers(card).tolist() for card in cyclic] == both * [[[345, 0], [40345, 10]]]
 
 
+def test_damping_is_a_card_of_the_beam_and_refused_where_it_would_be_of_more(
+    written, impact, mesh, sprung, sprung_mesh
+):
+    def damped(impact, **values):
+        return replace(impact, beam=replace(impact.beam, **values))
+
+    deck = written("abaqus", damped(impact, mass_damping=12.5, stiffness_damping=3e-7))
+    damping = decks.named(deck, "DAMPING")
+    assert damping.parameters == {"ALPHA": "12.5", "BETA": "3e-07"}
+    assert deck[deck.index(damping) - 3] == decks.named(deck, "MATERIAL", NAME="BEAM_STEEL")
+    with pytest.raises(ValueError, match=r"CalculiX 2\.20 damps the sphere, too: set it to 0, or"):
+        written("calculix", damped(impact, mass_damping=12.5))
+    with pytest.raises(ValueError, match="stiffness_damping = 1e-07: springs of decks are"):
+        written("abaqus", damped(sprung, stiffness_damping=1e-7, mass_damping=1.0), sprung_mesh)
+    deck = written("abaqus", damped(sprung, mass_damping=1.0), sprung_mesh)
+    assert decks.named(deck, "DAMPING").parameters == {"ALPHA": "1", "BETA": "0"}
+
+
 def pulled_and_pushed(strains, isotropic, kinematic):
     """Stress (MPa) at each strain, by the return mapping of one dimension in small steps."""
     stresses, plastic, back, size, last = [], 0.0, 0.0, YIELD, 0.0

@@ -254,6 +254,11 @@ FURTHER = {"impact.strike_position": 0.25, "impact.further_spheres": "0.5 1 0"}
         ),
         (FURTHER | {"discretisation": "auto"}, "discretisation.auto", "needs one sphere"),
         (
+            FURTHER | {"impact.load": "contact_patch", "discretisation.scheme": "modal"},
+            "impact.load",
+            "must be point with further_spheres and scheme: modal",
+        ),
+        (
             FURTHER | {"sampling.parameters": {"further_spheres": ["0.5 1 0"]}},
             "sampling.parameters.further_spheres",
             "vary velocity and strike_position",
