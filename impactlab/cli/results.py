@@ -271,6 +271,10 @@ def rare(
     variation: Annotated[
         float, typer.Option(help="Coefficient of variation of the probability to reach.")
     ] = 0.1,
+    surrogate: Annotated[
+        bool,
+        typer.Option("--surrogate", help="Let a Gaussian process place the runs: far fewer."),
+    ] = False,
     workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
 ) -> None:
     """Estimate the probability of a rare event.
@@ -288,7 +292,7 @@ def rare(
 
     declared = read_study(study)
     folder, engine = steps.results_folder(declared.name), Engine("threads", workers)
-    result = rare_event(declared, folder, engine, samples, runs, variation)
+    result = rare_event(declared, folder, engine, samples, runs, variation, surrogate=surrogate)
     print(result.attrs["answer"], report_rare_event(result, folder), sep="\n")
 
 

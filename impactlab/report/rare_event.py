@@ -17,7 +17,7 @@ def report_rare_event(result: xr.Dataset, folder: Path) -> Path:
     figures = folder / RARE_EVENT / "figures"
     draw(_drawings(result), figures, str(result.attrs.get("study")))
     names = ("probability", "low", "high", "if_none", "if_all", "check", "first_order",
-             "coefficient_of_variation", "runs", "last_sample", "missing")  # fmt: skip
+             "coefficient_of_variation", "runs", "placed", "last_sample", "missing")  # fmt: skip
     numbers: list[Row] = [
         [labels.sentence(str(result[name].attrs["long_name"])), _cell(result[name].item())]
         for name in names
@@ -27,16 +27,11 @@ def report_rare_event(result: xr.Dataset, folder: Path) -> Path:
         [str(number), _cell(value)]
         for number, value in enumerate(unit(result["level"].values).tolist(), 1)
     ]
-    sections = [
-        Section(
-            "numbers",
-            "The estimate",
-            tables=[
-                Table("All numbers", ["Number", "Value"], numbers),
-                Table("Limits of the levels", ["Level", f"Limit ({unit.symbol or '–'})"], levels),
-            ],
-        )
-    ]
+    tables = [Table("All numbers", ["Number", "Value"], numbers)]
+    if levels:
+        head = ["Level", f"Limit ({unit.symbol or '–'})"]
+        tables.append(Table("Limits of the levels", head, levels))
+    sections = [Section("numbers", "The estimate", tables=tables)]
     return _written(result, folder, figures, RARE_EVENT, "Rare event", "rare", sections)
 
 

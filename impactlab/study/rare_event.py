@@ -29,6 +29,8 @@ from impactlab.validation.errors import Problem, StudyError
 from impactlab.verdicts import flagged
 
 _FEWEST = 200  # runs per level
+FEWEST_RUNS = 300
+"""Least number that all runs may be limited to, where a Gaussian process places them."""
 _MATTERS = 0.5  # standard deviations from which on the answer names a parameter
 
 
@@ -113,17 +115,26 @@ class LimitRuns:
         return f"{self.response.replace('_', ' ')} exceeds {limit}"
 
 
-def check_estimate(owner: str, samples: int, runs: int, target: float) -> tuple[int, int]:
+def check_estimate(
+    owner: str, samples: int, runs: int, target: float, *, surrogate: bool = False
+) -> tuple[int, int]:
     """Return runs per level and of an estimate. Raises ValueError for settings out of range."""
     samples = integer(owner, "samples", samples, _FEWEST)
     if not 0.01 <= target <= 0.5:
         message = "must be from 0.01 to 0.5"
         raise ValueError(f"{owner}: coefficient_of_variation = {target!r}: {message}")
-    return samples, integer(owner, "runs", runs, 4 * samples)
+    return samples, integer(owner, "runs", runs, FEWEST_RUNS if surrogate else 4 * samples)
 
 
 def rare_event(
-    study: AnyStudy, folder: Path, engine: Engine, samples: int, runs: int, target: float
+    study: AnyStudy,
+    folder: Path,
+    engine: Engine,
+    samples: int,
+    runs: int,
+    target: float,
+    *,
+    surrogate: bool = False,
 ) -> xr.Dataset:
     """Return the probability that a study's response exceeds its limit; see il.rare_event.
 
@@ -131,24 +142,27 @@ def rare_event(
 
     Raises as LimitRuns.of, and ValueError for settings out of range.
     """
-    samples, runs = check_estimate("rare_event", samples, runs, target)
+    samples, runs = check_estimate("rare_event", samples, runs, target, surrogate=surrogate)
     solver = LimitRuns.of(study, folder, engine, RARE_EVENT)
-    result = estimated(
-        solver.outputs,
-        len(solver.sampling.varied),
-        solver.limit,
-        seed=solver.sampling.seed,
-        samples=samples,
-        most=runs,
-        target=target,
-        confidence=study.analysis.confidence,
-    )
+    event = solver.outputs, len(solver.sampling.varied), solver.limit
+    settings: dict[str, Any] = {"seed": solver.sampling.seed, "most": runs, "target": target}
+    settings["confidence"] = study.analysis.confidence
+    if surrogate:
+        from impactlab.analysis.limit_state import MOST_PARAMETERS, learned_estimate
+
+        if event[1] > MOST_PARAMETERS:
+            message = f"a Gaussian process knows at most {MOST_PARAMETERS} parameters"
+            raise ValueError(f"rare_event: surrogate: {message}, and {event[1]} vary: leave it out")
+        result = learned_estimate(*event, **settings)
+    else:
+        result = estimated(*event, samples=samples, **settings)
     dataset = _dataset(result, solver).assign_attrs(
         study.attributes() | provenance(),
         study_file=study_file(study, folder),
         confidence=study.analysis.confidence,
         target=target,
         words=solver.sampling.words,
+        arguments=" --surrogate" if surrogate else "",
         answer=_answer(result, solver),
     )
     write_netcdf(dataset, folder / f"{RARE_EVENT}.nc", "rare_event")
@@ -183,6 +197,7 @@ def _dataset(result: Estimate, solver: LimitRuns) -> xr.Dataset:
         ),
         "runs": (result.runs, "1", "runs solved, in all"),
         "last_sample": (result.last_sample, "1", "runs of the sample that gives the estimate"),
+        "placed": (result.placed, "1", "runs that a Gaussian process placed, with its first ones"),
         "missing": (result.missing, "1", "of these, runs without an answer"),
     }
     variables = {
@@ -222,6 +237,12 @@ def _answer(result: Estimate, solver: LimitRuns) -> str:
         f"{result.high:.2g}, {100 * study.analysis.confidence:g} % interval; coefficient of "
         f"variation {result.coefficient_of_variation:.2g}; {result.runs:,} runs)."
     )
+    if result.placed:
+        plain = (1 - result.probability) / (result.probability * result.coefficient_of_variation**2)
+        text += (
+            f"\nRuns: {result.placed:,} for a Gaussian process, {result.last_sample:,} for the "
+            f"estimate; plain draws would take about {float(f'{plain:.2g}'):,.0f}."
+        )
     if result.verdict is not RareEventVerdict.USABLE:
         text += f"\nCaution: {result.verdict.meaning}."
     places = []

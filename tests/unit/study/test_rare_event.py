@@ -55,6 +55,21 @@ def test_words_are_drawn_with_their_weights(tmp_path):
     assert np.isnan(rare.first_order), "no plane lies along words"
 
 
+def test_a_process_places_the_same_runs_for_any_number_of_workers(tmp_path):
+    first = il.rare_event(study(tmp_path / "one"), surrogate=True, workers=1)
+    stored = sorted((tmp_path / "one" / "load" / "rare_event").rglob("*.npz"))
+    assert stored
+    times = [file.stat().st_mtime_ns for file in stored]
+    again = il.rare_event(study(tmp_path / "one"), surrogate=True, workers=1)
+    assert times == [file.stat().st_mtime_ns for file in stored], "runs were solved again"
+    other = il.rare_event(study(tmp_path / "two"), surrogate=True, workers=2)
+    assert first.probability.item() == again.probability.item() == other.probability.item()
+    assert first.low < norm.sf(6 / np.sqrt(2)) < first.high
+    assert first.runs < 400
+    assert "for a Gaussian process" in first.answer
+    assert first.attrs["arguments"] == " --surrogate"
+
+
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
@@ -71,6 +86,20 @@ def test_studies_without_distributions_or_limit_are_refused(tmp_path, changes, r
 
 
 def test_settings_out_of_range_are_refused(tmp_path):
-    for settings in ({"samples": 10}, {"runs": 500}, {"coefficient_of_variation": 2.0}):
+    for settings in (
+        {"samples": 10},
+        {"runs": 500},
+        {"runs": 200, "surrogate": True},
+        {"coefficient_of_variation": 2.0},
+    ):
         with pytest.raises(ValueError, match=next(iter(settings))):
             il.rare_event(study(tmp_path), workers=1, **settings)
+
+
+def test_a_process_of_many_parameters_is_refused(tmp_path):
+    names = [f"x{number}" for number in range(17)]
+    sampling = il.Pawn(samples=128, parameters={name: il.Normal(0, 1) for name in names})
+    function = lambda **values: sum(values.values())  # noqa: E731
+    many = study(tmp_path, function, sampling=sampling)
+    with pytest.raises(ValueError, match="at most 16 parameters, and 17 vary"):
+        il.rare_event(many, surrogate=True, workers=1)
