@@ -24,6 +24,7 @@ from impactlab.report.convergence import convergence
 from impactlab.report.distribution import regime_entries
 from impactlab.report.explorer import write_explorer
 from impactlab.report.page import Cell, Row, Section, Table, described, motion, pictures, write_page
+from impactlab.report.rare_event import answers_beside
 
 _GRID_VALUES = 12  # a longer list of values of a grid is replaced by its range
 _FAILED_RUNS = 20  # largest number of failed runs listed one by one
@@ -71,6 +72,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
         **described(runs),
         headline=headline,
         answers=answer,
+        beside=answers_beside(runs, path.parent),
         note=note,
         bad=bool(regime_entries(runs)),
         leading=figures.pop(first, None),

@@ -70,6 +70,19 @@ def test_a_process_places_the_same_runs_for_any_number_of_workers(tmp_path):
     assert first.attrs["arguments"] == " --surrogate"
 
 
+def test_the_report_of_the_study_tells_the_answer(tmp_path):
+    limited = study(tmp_path)
+    limited.run(workers=1)
+    answer = il.rare_event(limited, surrogate=True, workers=1).answer.splitlines()[0]
+    page = limited.report().read_text("utf-8").replace("\xa0", " ")
+    assert f"Rare event:</strong> {answer.removesuffix('.')} (<a" in page
+    assert 'href="rare_event.html"' in page
+    changed = study(tmp_path, limits={"value": 1})
+    changed.run(workers=1, replace=True)
+    page = changed.report().read_text("utf-8")
+    assert "of an earlier text of this study, not of these runs (<a" in page
+
+
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
