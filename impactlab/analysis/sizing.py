@@ -192,6 +192,15 @@ def size(
     )  # fmt: skip
 
 
+def pilot_runs(size: int) -> int:
+    """Return the number of runs that give the first guess, of so many variables and parameters."""
+    return int(1 << (max(_FEWEST_PILOT_RUNS, _TERMS * _terms(size)) - 1).bit_length())
+
+
+def _terms(size: int) -> int:
+    return (size + 1) * (size + 2) // 2
+
+
 def _first_guess(
     solve: Response, variables: int, parameters: int, limit: float, seed: int
 ) -> tuple[int, Index]:
@@ -200,8 +209,7 @@ def _first_guess(
     Raises ValueError where too few of them have an answer.
     """
     size = variables + parameters
-    terms = (size + 1) * (size + 2) // 2
-    runs = 1 << (max(_FEWEST_PILOT_RUNS, _TERMS * terms) - 1).bit_length()
+    terms, runs = _terms(size), pilot_runs(size)
     unit = scipy.stats.qmc.Sobol(size, rng=np.random.default_rng(seed)).random(runs)
     designs = unit[:, :variables]
     scores = _PILOT_SPREAD * scipy.special.ndtri(np.clip(unit[:, variables:], 1e-9, 1 - 1e-9))

@@ -21,6 +21,8 @@ from impactlab.provenance import provenance
 from impactlab.study import RARE_EVENT, steps
 from impactlab.study.design import design
 from impactlab.study.engine import Engine
+from impactlab.study.estimate import Estimate as Cost
+from impactlab.study.estimate import estimate as cost_of
 from impactlab.study.execute import execute
 from impactlab.study.ownership import check_unclaimed, study_file
 from impactlab.study.schema.declarations import AnyStudy
@@ -58,20 +60,8 @@ class LimitRuns:
         Raises StudyError for a study without a sample or with other than one limit, ValueError
         where another study has results in `folder`.
         """
-        sampling = study.sampling
-        if not isinstance(sampling, RandomSample):
-            reason = "a rare event needs distributions: use any method but grid"
-            raise StudyError(Problem(str(study.path), "sampling.method", reason))
-        if isinstance(sampling, Hypercube) and sampling.correlations:
-            reason = "are not known to the search for a rare event: take them out"
-            raise StudyError(Problem(str(study.path), "sampling.correlations", reason))
-        if len(study.limits) != 1:
-            reason = (
-                f"state {len(study.limits)} limits, and a rare event has one: state one response"
-            )
-            raise StudyError(Problem(str(study.path), "limits", reason))
+        sampling, response, limit = limited_sample(study)
         check_unclaimed(study, folder / "runs.nc")
-        ((response, limit),) = study.limits.items()
         declared = steps.resolved(study, folder, engine) or study
         first = design(declared, 0, 1).assign_attrs(histories=0, profiles=0)
         return cls(declared, sampling, first, response, limit, folder / kind, engine)
@@ -115,6 +105,25 @@ class LimitRuns:
         return f"{self.response.replace('_', ' ')} exceeds {limit}"
 
 
+def limited_sample(study: AnyStudy) -> tuple[RandomSample, str, float]:
+    """Return the sample, the response with a limit, and this limit.
+
+    Raises StudyError for a study without a sample or with other than one limit.
+    """
+    sampling = study.sampling
+    if not isinstance(sampling, RandomSample):
+        reason = "a rare event needs distributions: use any method but grid"
+        raise StudyError(Problem(str(study.path), "sampling.method", reason))
+    if isinstance(sampling, Hypercube) and sampling.correlations:
+        reason = "are not known to the search for a rare event: take them out"
+        raise StudyError(Problem(str(study.path), "sampling.correlations", reason))
+    if len(study.limits) != 1:
+        reason = f"state {len(study.limits)} limits, and a rare event has one: state one response"
+        raise StudyError(Problem(str(study.path), "limits", reason))
+    ((response, limit),) = study.limits.items()
+    return sampling, response, limit
+
+
 def check_estimate(
     owner: str, samples: int, runs: int, target: float, *, surrogate: bool = False
 ) -> tuple[int, int]:
@@ -124,6 +133,12 @@ def check_estimate(
         message = "must be from 0.01 to 0.5"
         raise ValueError(f"{owner}: coefficient_of_variation = {target!r}: {message}")
     return samples, integer(owner, "runs", runs, FEWEST_RUNS if surrogate else 4 * samples)
+
+
+def cost(study: AnyStudy, folder: Path, workers: int, runs: int) -> Cost:
+    """Return the cost of at most so many runs of a study. Raises StudyError as LimitRuns.of."""
+    limited_sample(study)
+    return cost_of(steps.resolved(study, folder) or study, folder, workers, runs)
 
 
 def rare_event(

@@ -8,7 +8,15 @@ import numpy as np
 import scipy  # its special is loaded when first used
 import xarray as xr
 
-from impactlab.analysis.sizing import MOST_VARIABLES, Index, Sizing, SizingVerdict, size
+from impactlab.analysis.sizing import (
+    MOST_ESTIMATES,
+    MOST_VARIABLES,
+    Index,
+    Sizing,
+    SizingVerdict,
+    pilot_runs,
+    size,
+)
 from impactlab.files import write_netcdf
 from impactlab.methods.distributions import LogUniform, Uniform
 from impactlab.model.checks import column
@@ -18,7 +26,7 @@ from impactlab.provenance import provenance
 from impactlab.study import SIZING
 from impactlab.study.engine import Engine
 from impactlab.study.ownership import study_file
-from impactlab.study.rare_event import LimitRuns, check_estimate
+from impactlab.study.rare_event import LimitRuns, check_estimate, limited_sample
 from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown
@@ -27,6 +35,14 @@ from impactlab.verdicts import flagged
 MASS = "mass"
 """Name of the objective that is no parameter: the mass of the beam."""
 _LEAST, _MOST = 1e-6, 0.3  # probabilities
+
+
+def most_runs(study: AnyStudy, runs: int) -> int:
+    """Return the most runs of a design, of which each estimate takes at most `runs`.
+
+    Raises StudyError as LimitRuns.of.
+    """
+    return pilot_runs(len(limited_sample(study)[0].varied)) + MOST_ESTIMATES * runs
 
 
 def sizing(
