@@ -43,6 +43,7 @@ _CANDIDATES, _SHORTLIST, _DRAWS = 2000, 200, 10_000
 _LEVEL, _LEVELS = 600, 40  # draws of the process, per level, and levels at most
 _OPTIMISM = 1.0  # standard deviations of the process by which the limit may be nearer
 _UNLIKELY = 1e-4  # probability to lie beyond the limit that a density does without
+_RAY, _STRIDE = 401, 4  # points of a ray towards the design point, and between its runs
 _MARGIN = 1.2  # on the size of the last sample
 _NEAR = 0.3  # of the process' probability, below which that of the checks does not count
 
@@ -139,11 +140,21 @@ def learned_estimate(
     density = _density(fit, parameters, rng)
     size = min(max(size, _FEWEST), most - runs - _BATCH)
     sample = _Sample.of(fit, density, size, limit, solve, rng)
+
+    def confirm(ray: Floats) -> Floats:
+        """Return responses along a ray where the process expects the limit, -inf elsewhere."""
+        place = int((fit.mean_and_deviation(ray)[0] > 0).argmax())
+        rows = np.clip(place + _STRIDE * np.arange(-2, _BATCH - 2), 0, len(ray) - 1)
+        confirmed = np.full(len(ray), -np.inf)
+        confirmed[rows] = solve(ray[rows])
+        return confirmed
+
     result = judged(
-        sample.scores, sample.log_ratio, sample.outputs, limit, (first, error), runs + size, [],
-        (solve, _BATCH, target, confidence), sample.mean,
+        sample.scores, sample.log_ratio, sample.outputs, limit, (first, error), 0, [],
+        (confirm, _RAY, target, confidence), sample.mean,
     )  # fmt: skip
-    return replace(result, placed=runs - _CHECKS)
+    runs += size + (0 if result.design_point is None else _BATCH)
+    return replace(result, placed=outputs.size - _CHECKS, runs=runs)
 
 
 @dataclass(frozen=True)

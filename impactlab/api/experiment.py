@@ -212,7 +212,7 @@ def rare_event(
     Raises
     ------
     StudyError
-        If the study has no sample, correlations, or not one limit.
+        If the study has no sample, or not one limit.
     ValueError
         If a setting is out of range, or another study has results of this name.
 
@@ -294,10 +294,10 @@ def size(
     Raises
     ------
     StudyError
-        If the study has no sample, correlations, or not one limit.
+        If the study has no sample, or not one limit.
     ValueError
-        If a variable has no range, a setting is out of range, or another study has results of this
-        name.
+        If a variable has no range or correlates with others, a setting is out of range, or another
+        study has results of this name.
 
     References
     ----------

@@ -12,7 +12,7 @@ from impactlab.analysis.rare_event import Estimate, RareEventVerdict
 from impactlab.analysis.rare_event import estimate as estimated
 from impactlab.files import write_netcdf
 from impactlab.methods.distributions import Choice
-from impactlab.methods.hypercube import Hypercube
+from impactlab.methods.hypercube import Correlations, Hypercube, correlation_matrix
 from impactlab.methods.runs import usable
 from impactlab.methods.sampling import RandomSample
 from impactlab.model.checks import integer
@@ -40,6 +40,7 @@ _MATTERS = 0.5  # standard deviations from which on the answer names a parameter
 class LimitRuns:
     """Runs of a study's solver at standard normal scores, and the response that has a limit.
 
+    Scores are independent; with correlations, those of the parameters are their Gaussian copula.
     declared: the study, with a discretisation. first: its first run, as a design. folder: of the
     runs, which are not solved again. units: of the response, known after the first runs.
     """
@@ -78,8 +79,22 @@ class LimitRuns:
         self.units = str(solved[self.response].attrs.get("units", "1"))
         return np.asarray(usable(solved, self.response).values[0])
 
+    def deviations(self, scores: Floats) -> Floats:
+        """Return the scores that correlated parameters have by themselves, (runs, parameter)."""
+        if not self.correlations:
+            return scores
+        linear = correlation_matrix(list(self.sampling.varied), self.correlations)
+        # einsum, not a product of matrices: the same bits for any number of threads
+        return np.einsum("nj,ij->ni", scores, np.linalg.cholesky(linear))
+
+    @property
+    def correlations(self) -> Correlations:
+        """Pairs of parameters with their rank correlation."""
+        return self.sampling.correlations if isinstance(self.sampling, Hypercube) else ()
+
     def values(self, scores: Floats) -> dict[str, np.ndarray]:
         """Return the values, or words, of each varied parameter at scores (runs, parameter)."""
+        scores = self.deviations(scores)
         return {
             name: entry.quantile(scipy.special.ndtr(column))
             if isinstance(entry, Choice)
@@ -114,9 +129,6 @@ def limited_sample(study: AnyStudy) -> tuple[RandomSample, str, float]:
     if not isinstance(sampling, RandomSample):
         reason = "a rare event needs distributions: use any method but grid"
         raise StudyError(Problem(str(study.path), "sampling.method", reason))
-    if isinstance(sampling, Hypercube) and sampling.correlations:
-        reason = "are not known to the search for a rare event: take them out"
-        raise StudyError(Problem(str(study.path), "sampling.correlations", reason))
     if len(study.limits) != 1:
         reason = f"state {len(study.limits)} limits, and a rare event has one: state one response"
         raise StudyError(Problem(str(study.path), "limits", reason))
@@ -222,6 +234,7 @@ def _dataset(result: Estimate, solver: LimitRuns) -> xr.Dataset:
     scores = {"units": "1", "long_name": "design point, in standard normal scores"}
     values = {"long_name": "values of the design point"}
     places = solver.values(point[np.newaxis])
+    point = solver.deviations(point[np.newaxis])[0]
     texts = [
         "" if np.isnan(point).any() else solver.stated(name, places[name][0]) for name in places
     ]
@@ -261,8 +274,9 @@ def _answer(result: Estimate, solver: LimitRuns) -> str:
     if result.verdict is not RareEventVerdict.USABLE:
         text += f"\nCaution: {result.verdict.meaning}."
     places = []
-    point = dict(zip(varied, result.design_point.tolist(), strict=True))
-    values = solver.values(result.design_point[np.newaxis])
+    row = result.design_point[np.newaxis]
+    point = dict(zip(varied, solver.deviations(row)[0].tolist(), strict=True))
+    values = solver.values(row)
     for name, score in sorted(point.items(), key=lambda item: -abs(item[1])):
         if isinstance(varied[name], Choice):
             places.append(f"{solver.long_name(name)} {values[name][0]}")

@@ -122,6 +122,13 @@ def _check_variables(solver: LimitRuns, variables: Sequence[str]) -> None:
                 f"size: variables: {variable} has no range: give it the distribution uniform, from "
                 "the least to the greatest value that you could choose"
             )
+    for *pair, _ in solver.correlations:
+        for variable in {*pair} & {*variables}:
+            other = pair[variable == pair[0]]
+            raise ValueError(
+                f"size: variables: {variable} is chosen, and so cannot correlate with {other}: "
+                "take the entry out of sampling.correlations"
+            )
     if len(set(variables)) != len(variables) or not 1 <= len(variables) <= MOST_VARIABLES:
         raise ValueError(f"size: variables: must be 1 to {MOST_VARIABLES} different parameters")
     if len(variables) == len(varied):

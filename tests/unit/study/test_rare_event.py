@@ -35,6 +35,20 @@ def test_runs_are_kept_and_give_the_same_bits_for_any_number_of_workers(tmp_path
     assert page.count("<figure") == 1
 
 
+@pytest.mark.parametrize("surrogate", [False, True])
+def test_correlations_are_those_of_the_copula(tmp_path, surrogate):
+    parameters = {"load": il.Normal(5, 1), "strength": il.Normal(11, 1)}
+    pairs = [("load", "strength", -0.5)]
+    sampling = il.Pawn(samples=128, seed=2, parameters=parameters, correlations=pairs)
+    rare = il.rare_event(study(tmp_path, sampling=sampling), surrogate=surrogate, workers=1)
+    linear = 2 * np.sin(np.pi * -0.5 / 6)
+    exact = norm.sf(6 / np.sqrt(2 - 2 * linear))
+    assert rare.low < exact < rare.high
+    assert rare.first_order == pytest.approx(exact, rel=0.3)
+    # on the limit load and strength differ by nothing: both are three deviations away
+    np.testing.assert_allclose(rare.design_point, [3, -3], atol=0.4)
+
+
 def test_words_are_drawn_with_their_weights(tmp_path):
     def response(grade, load):
         return load + {"good": 0.0, "poor": 2.0}[grade]

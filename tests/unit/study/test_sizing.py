@@ -51,6 +51,29 @@ def test_the_least_area_is_found_with_the_same_bits_for_any_number_of_workers(tm
     assert page.count("<figure") == 1
 
 
+def test_correlations_count_but_not_with_what_is_chosen(tmp_path):
+    def of(pair):
+        sampling = il.Pawn(samples=128, parameters=PARAMETERS, correlations=[(*pair, -0.7)])
+        return il.Study(
+            title="Rod", function=stress_minus_strength, limits={"value": 0}, results=tmp_path,
+            sampling=sampling,
+        )  # fmt: skip
+
+    settings = {"probability": 1e-3, "minimise": "area", "workers": 1}
+    result = il.size(of(("load", "strength")), ["area"], **settings)
+    linear = 2 * np.sin(np.pi * -0.7 / 6)
+
+    def excess(area):
+        deviation = np.sqrt(1 / area**2 + 0.25 - linear / area)
+        return norm.logsf((6 - 5 / area) / deviation) - np.log(1e-3)
+
+    exact = brentq(excess, 1, 3)
+    assert exact > 1.05 * exact_area(1e-3)
+    assert exact <= result.area[0] < 1.03 * exact
+    with pytest.raises(ValueError, match="area is chosen, and so cannot correlate with load"):
+        il.size(of(("load", "area")), ["area"], **settings)
+
+
 def test_the_greatest_load_is_the_one_with_the_probability(tmp_path):
     ranges = PARAMETERS | {"load": il.Uniform(3, 9), "area": il.Normal(1.5, 0.05)}
     declared = il.Study(
