@@ -244,6 +244,8 @@ def _answer(
     )
     if np.isnan(estimate.probability):
         known = "unknown, because the runs allowed do not reach the limit"
+    if result.verdict is SizingVerdict.UNREACHED:
+        known = "too small to estimate"
     if result.verdict in (SizingVerdict.IMPOSSIBLE, SizingVerdict.NOT_CONVERGED):
         return (
             f"No design: {result.verdict.meaning}.\n"
@@ -263,7 +265,7 @@ def _answer(
         lines.append(f"{label.capitalize()}: {chosen}; the {kind} possible is {low} to {high}.")
     if result.verdict is not SizingVerdict.USABLE:
         meaning = result.verdict.meaning
-        if not estimate.verdict.sound:
+        if result.verdict is SizingVerdict.UNSOUND:
             meaning += f" ({estimate.verdict.meaning})"
         lines.append(f"Caution: {meaning}.")
     return "\n".join(lines)

@@ -109,12 +109,15 @@ def test_settings_that_are_wrong_are_refused(tmp_path, variables, settings, reas
         il.size(study(tmp_path), variables, workers=1, **settings)
 
 
-def test_a_limit_that_no_run_reaches_gives_no_design(tmp_path):
+def test_a_limit_that_no_run_reaches_is_met_by_the_best_end(tmp_path):
     rod = study(tmp_path, limits={"value": 1000})
     result = il.size(rod, ["area"], probability=0.01, minimise="area", workers=1)
-    assert result.answer.startswith("No design: no estimate allowed meets the probability")
-    assert "unknown, because the runs allowed do not reach the limit" in result.answer
+    assert result.area.values.tolist() == [1, 1, 1]
+    assert "has area 1." in result.answer
+    assert "Probability there: too small to estimate" in result.answer
+    assert "Caution: even the best end of the ranges hardly reaches the limit" in result.answer
     assert "nan" not in result.answer
+    assert (tmp_path / "rod" / "sizing.html").exists()
 
 
 def test_the_mass_is_that_of_the_beam(tmp_path):
