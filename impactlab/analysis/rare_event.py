@@ -33,11 +33,14 @@ _ALL_ROUND, _LEAST_REACH = 0.2, 1.5
 least width: regions that the levels have missed show up in the error, and are found."""
 _MARGIN = 1.2  # on the size of the last sample
 _HEAVY = 0.1
-_SAFETY = 1.1  # on standard errors: those of skewed weights are up to 9 % too small
+SAFETY = 1.1
+"""Factor on standard errors: those of skewed weights are up to 9 % too small."""
 _DISAGREEING = 3.0  # standard errors between both estimates
 _RAY = 33  # runs that confirm a design point
 _AROUND, _AS_NEAR = 0.5, 1.03  # cosine of the angle to the nearest run; length over its length
 Runs = Callable[[Floats], Floats]
+Mean = Callable[[NDArray[np.bool_], NDArray[np.bool_]], tuple[float, float, float]]
+"""From masks of the runs above the limit, and of those that count, to what _mean returns."""
 
 
 class RareEventVerdict(Verdict):
@@ -91,7 +94,7 @@ class Estimate:
     low, high: ends of its interval. if_none, if_all: estimates if no missing run of the last sample
     exceeds the limit, or all do. check: the estimate of the sample before. levels: limits of the
     levels. design_point: scores of the likeliest run beyond the limit, (parameter,). runs: number
-    of all runs. missing: of the last sample.
+    of all runs. missing: of the last sample. placed: runs by which a Gaussian process was learned.
     """
 
     verdict: RareEventVerdict
@@ -106,6 +109,7 @@ class Estimate:
     coefficient_of_variation: float = np.nan
     missing: int = 0
     last_sample: int = 0
+    placed: int = 0
     design_point: Floats | None = None
 
 
@@ -138,7 +142,7 @@ def estimate(
         stuck = len(levels) > 2 and levels[-1] <= levels[-3]
         if stuck or level == -np.inf or runs + samples * (2 if last else 1) + ray > most:
             return Estimate(RareEventVerdict.NOT_REACHED, runs, levels)
-        densities.append(_fitted(scores[beyond], log_ratio[beyond], rng))
+        densities.append(nearest_mixture(scores[beyond], log_ratio[beyond], rng))
         size = samples
         scores = densities[-1].draws(size, rng)
         log_ratio, outputs = densities[-1].log_ratio(scores), solve(scores)
@@ -151,17 +155,18 @@ def estimate(
     per_run = first_error / first * np.sqrt(samples)
     size = int(np.ceil(_MARGIN * (per_run / target) ** 2))
     size = min(max(size, samples), most - runs - ray)
-    density = _fitted(scores[outputs > limit], log_ratio[outputs > limit], rng)
+    density = nearest_mixture(scores[outputs > limit], log_ratio[outputs > limit], rng)
     scores = density.draws(size, rng)
     log_ratio, outputs = density.log_ratio(scores), solve(scores)
     runs += size
-    return _judged(
+    return judged(
         scores, log_ratio, outputs, limit, (first, first_error), runs, levels,
         (solve, ray, target, confidence),
+        lambda above, rows: _mean(log_ratio[rows], above[rows]),
     )  # fmt: skip
 
 
-def _judged(
+def judged(
     scores: Floats,
     log_ratio: Floats,
     outputs: Floats,
@@ -170,15 +175,17 @@ def _judged(
     runs: int,
     levels: list[float],
     settings: tuple[Runs, int, float, float],
+    mean: Mean,
 ) -> Estimate:
     """Return the estimate of the last sample, its verdict, and the design point."""
     solve, ray, target, confidence = settings
     above, gaps = outputs > limit, np.isnan(outputs)
-    value, error, heaviest = _mean(log_ratio, above)
-    if not value:
+    everything = np.full(gaps.shape, True)
+    value, error, heaviest = mean(above, everything)
+    if not above.any() or value <= 0:
         return Estimate(RareEventVerdict.NOT_REACHED, runs, levels)
-    most_of, most_error, _ = _mean(log_ratio, above | gaps)
-    answered = _mean(log_ratio[~gaps], above[~gaps])[0] if gaps.any() else value
+    most_of, most_error, _ = mean(above | gaps, everything)
+    answered = mean(above, ~gaps)[0] if gaps.any() else value
     # logarithms of the ends are symmetric: the weights are skewed, and no end is below zero
     quantile = float(scipy.stats.t.ppf(0.5 + confidence / 2, outputs.size - 1))
     low = value * np.exp(-quantile * error / value)
@@ -195,7 +202,7 @@ def _judged(
     point = _design_point(scores[above], log_ratio[above], limit, solve, ray)
     return Estimate(
         verdict, runs + ray, levels, answered, low, high, value, most_of, check[0],
-        variation, int(gaps.sum()), outputs.size, point,
+        variation, int(gaps.sum()), outputs.size, design_point=point,
     )  # fmt: skip
 
 
@@ -203,11 +210,11 @@ def _mean(log_ratio: Floats, above: NDArray[np.bool_]) -> tuple[float, float, fl
     """Return the weighted share of runs above, its standard error, and the largest one's share."""
     weights = np.where(above, np.exp(log_ratio), 0.0)
     total = float(weights.sum())
-    error = _SAFETY * float(weights.std(ddof=1)) / np.sqrt(weights.size)
+    error = SAFETY * float(weights.std(ddof=1)) / np.sqrt(weights.size)
     return total / weights.size, error, float(weights.max()) / total if total else np.nan
 
 
-def _fitted(scores: Floats, log_ratio: Floats, rng: np.random.Generator) -> Mixture:
+def nearest_mixture(scores: Floats, log_ratio: Floats, rng: np.random.Generator) -> Mixture:
     """Return the mixture nearest to weighted runs, with the components that Schwarz's BIC wants."""
     weights = np.exp(log_ratio - log_ratio.max())
     weights /= weights.sum()

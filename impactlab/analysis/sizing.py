@@ -14,7 +14,7 @@ import numpy as np
 import scipy  # its stats and special are loaded when first used
 from threadpoolctl import threadpool_limits
 
-from impactlab.analysis.rare_event import Estimate, estimate
+from impactlab.analysis.rare_event import SHARE, Estimate, estimate
 from impactlab.types import Floats
 from impactlab.verdicts import Verdict
 
@@ -46,6 +46,7 @@ class SizingVerdict(Verdict):
 
     USABLE = True, "runs at the design confirm its probability"
     AT_END = True, "runs confirm the best end of the ranges: wider ones may hold a better design"
+    UNREACHED = True, "even the best end of the ranges hardly reaches the limit: no run there did"
     UNSOUND = False, "the probability at the design is not to be relied on"
     NOT_CONVERGED = False, "no estimate allowed meets the probability: allow more runs"
     IMPOSSIBLE = False, "no design in the ranges has so small a probability"
@@ -169,6 +170,12 @@ def size(
         repeated = any(np.abs(best - design).max() < _SAME for design in model.designs)
         if repeated or goal <= tried(best) <= goal + (1 + _TOO_SAFE) * reach:
             break
+        if _is_least(best, objective, variables) and _is_far(estimates[-1], probability):
+            same, tries = np.tile(best, (3, 1)), np.array(model.designs)
+            return Sizing(
+                SizingVerdict.UNREACHED, same, objective(same), estimates[-1], estimates,
+                tries, objective(tries), np.empty((4, 0)), solved,
+            )  # fmt: skip
     chosen = len(estimates) - 1
     verdict = _verdict(model, estimates[chosen], goal, quantile)
     if verdict > SizingVerdict.UNSOUND:
@@ -192,6 +199,15 @@ def size(
     )  # fmt: skip
 
 
+def pilot_runs(size: int) -> int:
+    """Return the number of runs that give the first guess, of so many variables and parameters."""
+    return int(1 << (max(_FEWEST_PILOT_RUNS, _TERMS * _terms(size)) - 1).bit_length())
+
+
+def _terms(size: int) -> int:
+    return (size + 1) * (size + 2) // 2
+
+
 def _first_guess(
     solve: Response, variables: int, parameters: int, limit: float, seed: int
 ) -> tuple[int, Index]:
@@ -200,8 +216,7 @@ def _first_guess(
     Raises ValueError where too few of them have an answer.
     """
     size = variables + parameters
-    terms = (size + 1) * (size + 2) // 2
-    runs = 1 << (max(_FEWEST_PILOT_RUNS, _TERMS * terms) - 1).bit_length()
+    terms, runs = _terms(size), pilot_runs(size)
     unit = scipy.stats.qmc.Sobol(size, rng=np.random.default_rng(seed)).random(runs)
     designs = unit[:, :variables]
     scores = _PILOT_SPREAD * scipy.special.ndtri(np.clip(unit[:, variables:], 1e-9, 1 - 1e-9))
@@ -259,6 +274,24 @@ def _best(objective: Index, index: Index, goal: float, variables: int) -> Floats
         reach = _ZOOM * (high - low)
         low, high = np.maximum(best - reach, 0.0), np.minimum(best + reach, 1.0)
     return best
+
+
+def _is_least(design: Floats, objective: Index, variables: int) -> bool:
+    """Return True where no design has a smaller objective."""
+    least = _best(objective, lambda designs: np.ones(len(designs)), 0.0, variables)
+    return least is not None and bool(objective(design[None])[0] <= objective(least[None])[0])
+
+
+def _is_far(result: Estimate, probability: float) -> bool:
+    """Return True where the search for the limit ended in runs far rarer than the probability.
+
+    That is a tenth of it; or the response rose no more, level after level.
+    """
+    levels = result.levels
+    if not np.isnan(result.probability) or not np.isfinite(levels[-1]):
+        return False
+    is_still = len(levels) > 2 and levels[-1] <= levels[-3]
+    return is_still or SHARE ** len(levels) <= 0.1 * probability
 
 
 def _safest(model: _Model, variables: int, quantile: float) -> tuple[Floats, float]:

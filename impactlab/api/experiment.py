@@ -176,13 +176,15 @@ def rare_event(
     samples: int = 500,
     runs: int = 6000,
     coefficient_of_variation: float = 0.1,
+    surrogate: bool = False,
     workers: int = CORES,
 ) -> xr.Dataset:
     """Estimate the small probability that a response exceeds its limit, and the likeliest way.
 
     Importance sampling by cross-entropy: samples of the solver move towards the limit, and a last
-    one gives the estimate (docs/sensitivity.md). The runs are kept in the study's folder: the same
-    call resumes where it stopped.
+    one gives the estimate (docs/sensitivity.md). With `surrogate`, a Gaussian process places the
+    runs, of which a smooth response then takes a tenth. The runs are kept in the study's folder:
+    the same call resumes where it stopped.
 
     Parameters
     ----------
@@ -191,9 +193,11 @@ def rare_event(
     samples : int, default 500
         Number of runs per level, at least 200.
     runs : int, default 6000
-        Largest number of all runs, at least 4 `samples`.
+        Largest number of all runs, at least 4 `samples`; with `surrogate`, at least 300.
     coefficient_of_variation : float, default 0.1
         Standard error to reach over the probability, from 0.01 to 0.5.
+    surrogate : bool, default False
+        True to let a Gaussian process place the runs; `samples` is not used then.
     workers : int, optional
         Number of threads; by default that of the machine's cores.
 
@@ -208,14 +212,15 @@ def rare_event(
     Raises
     ------
     StudyError
-        If the study has no sample, correlations, or not one limit.
+        If the study has no sample, or not one limit.
     ValueError
         If a setting is out of range, or another study has results of this name.
 
     References
     ----------
     Rubinstein (1999), Methodol. Comput. Appl. Probab. 1, 127; Kurtz and Song (2013), Struct. Saf.
-    42, 35 (both recalled, not read).
+    42, 35; with `surrogate`: Echard, Gayton and Lemaire (2011), Struct. Saf. 33, 145; Dubourg,
+    Sudret and Deheeger (2013), Probab. Eng. Mech. 33, 47 (all recalled, not read).
 
     Examples
     --------
@@ -232,7 +237,7 @@ def rare_event(
 
     engine = local_engine(workers)
     settings = samples, runs, coefficient_of_variation
-    result = probability(study.declared, study.folder, engine, *settings)
+    result = probability(study.declared, study.folder, engine, *settings, surrogate=surrogate)
     report_rare_event(result, study.folder)
     return result
 
@@ -289,10 +294,10 @@ def size(
     Raises
     ------
     StudyError
-        If the study has no sample, correlations, or not one limit.
+        If the study has no sample, or not one limit.
     ValueError
-        If a variable has no range, a setting is out of range, or another study has results of this
-        name.
+        If a variable has no range or correlates with others, a setting is out of range, or another
+        study has results of this name.
 
     References
     ----------

@@ -1,5 +1,7 @@
 """Reports of a rare event, and of a design with a small probability: the answer first."""
 
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +10,7 @@ import xarray as xr
 from impactlab.figures import labels
 from impactlab.figures.draw import Drawing, draw
 from impactlab.figures.rare_event import FIGURES
+from impactlab.files import read_netcdf
 from impactlab.report.page import Cell, Row, Section, Table, write_listed
 from impactlab.study import RARE_EVENT, SIZING
 
@@ -17,7 +20,7 @@ def report_rare_event(result: xr.Dataset, folder: Path) -> Path:
     figures = folder / RARE_EVENT / "figures"
     draw(_drawings(result), figures, str(result.attrs.get("study")))
     names = ("probability", "low", "high", "if_none", "if_all", "check", "first_order",
-             "coefficient_of_variation", "runs", "last_sample", "missing")  # fmt: skip
+             "coefficient_of_variation", "runs", "placed", "last_sample", "missing")  # fmt: skip
     numbers: list[Row] = [
         [labels.sentence(str(result[name].attrs["long_name"])), _cell(result[name].item())]
         for name in names
@@ -27,16 +30,11 @@ def report_rare_event(result: xr.Dataset, folder: Path) -> Path:
         [str(number), _cell(value)]
         for number, value in enumerate(unit(result["level"].values).tolist(), 1)
     ]
-    sections = [
-        Section(
-            "numbers",
-            "The estimate",
-            tables=[
-                Table("All numbers", ["Number", "Value"], numbers),
-                Table("Limits of the levels", ["Level", f"Limit ({unit.symbol or '–'})"], levels),
-            ],
-        )
-    ]
+    tables = [Table("All numbers", ["Number", "Value"], numbers)]
+    if levels:
+        head = ["Level", f"Limit ({unit.symbol or '–'})"]
+        tables.append(Table("Limits of the levels", head, levels))
+    sections = [Section("numbers", "The estimate", tables=tables)]
     return _written(result, folder, figures, RARE_EVENT, "Rare event", "rare", sections)
 
 
@@ -65,6 +63,25 @@ def report_sizing(result: xr.Dataset, folder: Path) -> Path:
     tables = [Table("All designs tried, in order", ["Design", *heads], rows)]
     sections = [Section("designs", "Designs", tables=tables)]
     return _written(result, folder, figures, SIZING, "Design", "size", sections)
+
+
+def answers_beside(runs: xr.Dataset, folder: Path) -> Iterator[tuple[str, str, str]]:
+    """Yield subject, finding and page of the rare event and the design in a study's folder.
+
+    A result of another text of the study than the runs' says so in place of its finding.
+    """
+    for name, subject in ((RARE_EVENT, "Rare event"), (SIZING, "Design")):
+        path = folder / f"{name}.nc"
+        if not path.is_file() or not path.with_suffix(".html").is_file():
+            continue
+        with suppress(ValueError, OSError):  # a damaged file has no answer
+            attrs = read_netcdf(path, name).attrs
+            headline, *lines = (line.removesuffix(".") for line in attrs["answer"].splitlines())
+            cautions = [line for line in lines if line.startswith("Caution: ")]
+            finding = ". ".join([headline, *cautions])
+            if attrs.get("study_sha256") != runs.attrs.get("study_sha256"):
+                finding = "of an earlier text of this study, not of these runs"
+            yield subject, finding, f"{name}.html"
 
 
 def _drawings(result: xr.Dataset) -> list[Drawing]:

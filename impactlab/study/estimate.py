@@ -1,7 +1,7 @@
 """The cost of a study, before anything is drawn or solved, and its limits."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from shutil import disk_usage
 from types import SimpleNamespace
@@ -22,7 +22,7 @@ from impactlab.model.quantities import amount, time
 from impactlab.study.design import series_sizes
 from impactlab.study.inventory import BOUND_IT, file_stats
 from impactlab.study.schema.consistency import extremes, further_models, key_of
-from impactlab.study.schema.declarations import AnyStudy, FunctionStudy, ImpactStudy
+from impactlab.study.schema.declarations import AnyStudy, FunctionStudy, ImpactStudy, Store
 from impactlab.study.shard import Array
 from impactlab.validation.errors import Problem, StudyError
 from impactlab.variables import BY_SPHERE, HISTORIES, OF_STRIKES, PROFILES, RESPONSES
@@ -129,11 +129,12 @@ class Estimate:
         return [Problem(self.file, key, f"{reason}; {way_out}") for key, reason in exceeded]
 
 
-def estimate(study: AnyStudy, folder: Path, workers: int) -> Estimate:
+def estimate(study: AnyStudy, folder: Path, workers: int, runs: int = 0) -> Estimate:
     """Return the cost of a study on so many workers of this machine, within a factor of about 3.
 
     study: with its discretisation, where that is known (see steps.resolved). folder: for its
-    results; what they take already counts as free. Of many runs a sample is taken, always the same
+    results; what they take already counts as free. runs: of its distributions, in place of its own;
+    they keep no series. Of many runs a sample is taken, always the same
     one; the largest run is sought at the extremes of parameters. Pilot runs of `auto` and the
     analysis are not included. Raises StudyError where a sampled run is impossible.
     """
@@ -142,8 +143,10 @@ def estimate(study: AnyStudy, folder: Path, workers: int) -> Estimate:
     )
     occupied = sum(stat.st_size for stat in file_stats(folder.rglob("*")))
     file, doubted = str(study.path), []
+    if runs and isinstance(study, ImpactStudy):
+        study = replace(study, store=Store())
     until = study.sampling.until if isinstance(study.sampling, Sobol) else None
-    runs = max(study.sampling.runs, until.runs if until else 0)
+    runs = runs or max(study.sampling.runs, until.runs if until else 0)
     parameters = len(study.sampling.varied)
     if isinstance(study, FunctionStudy):
         sampled, largest, largest_run = np.full(1, _FUNCTION), _FUNCTION, {}

@@ -12,7 +12,7 @@ from impactlab.analysis.rare_event import Estimate, RareEventVerdict
 from impactlab.analysis.rare_event import estimate as estimated
 from impactlab.files import write_netcdf
 from impactlab.methods.distributions import Choice
-from impactlab.methods.hypercube import Hypercube
+from impactlab.methods.hypercube import Correlations, Hypercube, correlation_matrix
 from impactlab.methods.runs import usable
 from impactlab.methods.sampling import RandomSample
 from impactlab.model.checks import integer
@@ -21,6 +21,8 @@ from impactlab.provenance import provenance
 from impactlab.study import RARE_EVENT, steps
 from impactlab.study.design import design
 from impactlab.study.engine import Engine
+from impactlab.study.estimate import Estimate as Cost
+from impactlab.study.estimate import estimate as cost_of
 from impactlab.study.execute import execute
 from impactlab.study.ownership import check_unclaimed, study_file
 from impactlab.study.schema.declarations import AnyStudy
@@ -29,6 +31,8 @@ from impactlab.validation.errors import Problem, StudyError
 from impactlab.verdicts import flagged
 
 _FEWEST = 200  # runs per level
+FEWEST_RUNS = 300
+"""Least number that all runs may be limited to, where a Gaussian process places them."""
 _MATTERS = 0.5  # standard deviations from which on the answer names a parameter
 
 
@@ -36,6 +40,7 @@ _MATTERS = 0.5  # standard deviations from which on the answer names a parameter
 class LimitRuns:
     """Runs of a study's solver at standard normal scores, and the response that has a limit.
 
+    Scores are independent; with correlations, those of the parameters are their Gaussian copula.
     declared: the study, with a discretisation. first: its first run, as a design. folder: of the
     runs, which are not solved again. units: of the response, known after the first runs.
     """
@@ -56,20 +61,8 @@ class LimitRuns:
         Raises StudyError for a study without a sample or with other than one limit, ValueError
         where another study has results in `folder`.
         """
-        sampling = study.sampling
-        if not isinstance(sampling, RandomSample):
-            reason = "a rare event needs distributions: use any method but grid"
-            raise StudyError(Problem(str(study.path), "sampling.method", reason))
-        if isinstance(sampling, Hypercube) and sampling.correlations:
-            reason = "are not known to the search for a rare event: take them out"
-            raise StudyError(Problem(str(study.path), "sampling.correlations", reason))
-        if len(study.limits) != 1:
-            reason = (
-                f"state {len(study.limits)} limits, and a rare event has one: state one response"
-            )
-            raise StudyError(Problem(str(study.path), "limits", reason))
+        sampling, response, limit = limited_sample(study)
         check_unclaimed(study, folder / "runs.nc")
-        ((response, limit),) = study.limits.items()
         declared = steps.resolved(study, folder, engine) or study
         first = design(declared, 0, 1).assign_attrs(histories=0, profiles=0)
         return cls(declared, sampling, first, response, limit, folder / kind, engine)
@@ -86,8 +79,22 @@ class LimitRuns:
         self.units = str(solved[self.response].attrs.get("units", "1"))
         return np.asarray(usable(solved, self.response).values[0])
 
+    def deviations(self, scores: Floats) -> Floats:
+        """Return the scores that correlated parameters have by themselves, (runs, parameter)."""
+        if not self.correlations:
+            return scores
+        linear = correlation_matrix(list(self.sampling.varied), self.correlations)
+        # einsum, not a product of matrices: the same bits for any number of threads
+        return np.einsum("nj,ij->ni", scores, np.linalg.cholesky(linear))
+
+    @property
+    def correlations(self) -> Correlations:
+        """Pairs of parameters with their rank correlation."""
+        return self.sampling.correlations if isinstance(self.sampling, Hypercube) else ()
+
     def values(self, scores: Floats) -> dict[str, np.ndarray]:
         """Return the values, or words, of each varied parameter at scores (runs, parameter)."""
+        scores = self.deviations(scores)
         return {
             name: entry.quantile(scipy.special.ndtr(column))
             if isinstance(entry, Choice)
@@ -113,17 +120,48 @@ class LimitRuns:
         return f"{self.response.replace('_', ' ')} exceeds {limit}"
 
 
-def check_estimate(owner: str, samples: int, runs: int, target: float) -> tuple[int, int]:
+def limited_sample(study: AnyStudy) -> tuple[RandomSample, str, float]:
+    """Return the sample, the response with a limit, and this limit.
+
+    Raises StudyError for a study without a sample or with other than one limit.
+    """
+    sampling = study.sampling
+    if not isinstance(sampling, RandomSample):
+        reason = "a rare event needs distributions: use any method but grid"
+        raise StudyError(Problem(str(study.path), "sampling.method", reason))
+    if len(study.limits) != 1:
+        reason = f"state {len(study.limits)} limits, and a rare event has one: state one response"
+        raise StudyError(Problem(str(study.path), "limits", reason))
+    ((response, limit),) = study.limits.items()
+    return sampling, response, limit
+
+
+def check_estimate(
+    owner: str, samples: int, runs: int, target: float, *, surrogate: bool = False
+) -> tuple[int, int]:
     """Return runs per level and of an estimate. Raises ValueError for settings out of range."""
     samples = integer(owner, "samples", samples, _FEWEST)
     if not 0.01 <= target <= 0.5:
         message = "must be from 0.01 to 0.5"
         raise ValueError(f"{owner}: coefficient_of_variation = {target!r}: {message}")
-    return samples, integer(owner, "runs", runs, 4 * samples)
+    return samples, integer(owner, "runs", runs, FEWEST_RUNS if surrogate else 4 * samples)
+
+
+def cost(study: AnyStudy, folder: Path, workers: int, runs: int) -> Cost:
+    """Return the cost of at most so many runs of a study. Raises StudyError as LimitRuns.of."""
+    limited_sample(study)
+    return cost_of(steps.resolved(study, folder) or study, folder, workers, runs)
 
 
 def rare_event(
-    study: AnyStudy, folder: Path, engine: Engine, samples: int, runs: int, target: float
+    study: AnyStudy,
+    folder: Path,
+    engine: Engine,
+    samples: int,
+    runs: int,
+    target: float,
+    *,
+    surrogate: bool = False,
 ) -> xr.Dataset:
     """Return the probability that a study's response exceeds its limit; see il.rare_event.
 
@@ -131,24 +169,27 @@ def rare_event(
 
     Raises as LimitRuns.of, and ValueError for settings out of range.
     """
-    samples, runs = check_estimate("rare_event", samples, runs, target)
+    samples, runs = check_estimate("rare_event", samples, runs, target, surrogate=surrogate)
     solver = LimitRuns.of(study, folder, engine, RARE_EVENT)
-    result = estimated(
-        solver.outputs,
-        len(solver.sampling.varied),
-        solver.limit,
-        seed=solver.sampling.seed,
-        samples=samples,
-        most=runs,
-        target=target,
-        confidence=study.analysis.confidence,
-    )
+    event = solver.outputs, len(solver.sampling.varied), solver.limit
+    settings: dict[str, Any] = {"seed": solver.sampling.seed, "most": runs, "target": target}
+    settings["confidence"] = study.analysis.confidence
+    if surrogate:
+        from impactlab.analysis.limit_state import MOST_PARAMETERS, learned_estimate
+
+        if event[1] > MOST_PARAMETERS:
+            message = f"a Gaussian process knows at most {MOST_PARAMETERS} parameters"
+            raise ValueError(f"rare_event: surrogate: {message}, and {event[1]} vary: leave it out")
+        result = learned_estimate(*event, **settings)
+    else:
+        result = estimated(*event, samples=samples, **settings)
     dataset = _dataset(result, solver).assign_attrs(
         study.attributes() | provenance(),
         study_file=study_file(study, folder),
         confidence=study.analysis.confidence,
         target=target,
         words=solver.sampling.words,
+        arguments=" --surrogate" if surrogate else "",
         answer=_answer(result, solver),
     )
     write_netcdf(dataset, folder / f"{RARE_EVENT}.nc", "rare_event")
@@ -183,6 +224,7 @@ def _dataset(result: Estimate, solver: LimitRuns) -> xr.Dataset:
         ),
         "runs": (result.runs, "1", "runs solved, in all"),
         "last_sample": (result.last_sample, "1", "runs of the sample that gives the estimate"),
+        "placed": (result.placed, "1", "runs that a Gaussian process placed, with its first ones"),
         "missing": (result.missing, "1", "of these, runs without an answer"),
     }
     variables = {
@@ -192,6 +234,7 @@ def _dataset(result: Estimate, solver: LimitRuns) -> xr.Dataset:
     scores = {"units": "1", "long_name": "design point, in standard normal scores"}
     values = {"long_name": "values of the design point"}
     places = solver.values(point[np.newaxis])
+    point = solver.deviations(point[np.newaxis])[0]
     texts = [
         "" if np.isnan(point).any() else solver.stated(name, places[name][0]) for name in places
     ]
@@ -222,11 +265,18 @@ def _answer(result: Estimate, solver: LimitRuns) -> str:
         f"{result.high:.2g}, {100 * study.analysis.confidence:g} % interval; coefficient of "
         f"variation {result.coefficient_of_variation:.2g}; {result.runs:,} runs)."
     )
+    if result.placed:
+        plain = (1 - result.probability) / (result.probability * result.coefficient_of_variation**2)
+        text += (
+            f"\nRuns: {result.placed:,} for a Gaussian process, {result.last_sample:,} for the "
+            f"estimate; plain draws would take about {float(f'{plain:.2g}'):,.0f}."
+        )
     if result.verdict is not RareEventVerdict.USABLE:
         text += f"\nCaution: {result.verdict.meaning}."
     places = []
-    point = dict(zip(varied, result.design_point.tolist(), strict=True))
-    values = solver.values(result.design_point[np.newaxis])
+    row = result.design_point[np.newaxis]
+    point = dict(zip(varied, solver.deviations(row)[0].tolist(), strict=True))
+    values = solver.values(row)
     for name, score in sorted(point.items(), key=lambda item: -abs(item[1])):
         if isinstance(varied[name], Choice):
             places.append(f"{solver.long_name(name)} {values[name][0]}")

@@ -8,7 +8,15 @@ import numpy as np
 import scipy  # its special is loaded when first used
 import xarray as xr
 
-from impactlab.analysis.sizing import MOST_VARIABLES, Index, Sizing, SizingVerdict, size
+from impactlab.analysis.sizing import (
+    MOST_ESTIMATES,
+    MOST_VARIABLES,
+    Index,
+    Sizing,
+    SizingVerdict,
+    pilot_runs,
+    size,
+)
 from impactlab.files import write_netcdf
 from impactlab.methods.distributions import LogUniform, Uniform
 from impactlab.model.checks import column
@@ -18,7 +26,7 @@ from impactlab.provenance import provenance
 from impactlab.study import SIZING
 from impactlab.study.engine import Engine
 from impactlab.study.ownership import study_file
-from impactlab.study.rare_event import LimitRuns, check_estimate
+from impactlab.study.rare_event import LimitRuns, check_estimate, limited_sample
 from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown
@@ -27,6 +35,14 @@ from impactlab.verdicts import flagged
 MASS = "mass"
 """Name of the objective that is no parameter: the mass of the beam."""
 _LEAST, _MOST = 1e-6, 0.3  # probabilities
+
+
+def most_runs(study: AnyStudy, runs: int) -> int:
+    """Return the most runs of a design, of which each estimate takes at most `runs`.
+
+    Raises StudyError as LimitRuns.of.
+    """
+    return pilot_runs(len(limited_sample(study)[0].varied)) + MOST_ESTIMATES * runs
 
 
 def sizing(
@@ -105,6 +121,13 @@ def _check_variables(solver: LimitRuns, variables: Sequence[str]) -> None:
             raise ValueError(
                 f"size: variables: {variable} has no range: give it the distribution uniform, from "
                 "the least to the greatest value that you could choose"
+            )
+    for *pair, _ in solver.correlations:
+        for variable in {*pair} & {*variables}:
+            other = pair[variable == pair[0]]
+            raise ValueError(
+                f"size: variables: {variable} is chosen, and so cannot correlate with {other}: "
+                "take the entry out of sampling.correlations"
             )
     if len(set(variables)) != len(variables) or not 1 <= len(variables) <= MOST_VARIABLES:
         raise ValueError(f"size: variables: must be 1 to {MOST_VARIABLES} different parameters")
@@ -221,6 +244,8 @@ def _answer(
     )
     if np.isnan(estimate.probability):
         known = "unknown, because the runs allowed do not reach the limit"
+    if result.verdict is SizingVerdict.UNREACHED:
+        known = "too small to estimate"
     if result.verdict in (SizingVerdict.IMPOSSIBLE, SizingVerdict.NOT_CONVERGED):
         return (
             f"No design: {result.verdict.meaning}.\n"
@@ -240,7 +265,7 @@ def _answer(
         lines.append(f"{label.capitalize()}: {chosen}; the {kind} possible is {low} to {high}.")
     if result.verdict is not SizingVerdict.USABLE:
         meaning = result.verdict.meaning
-        if not estimate.verdict.sound:
+        if result.verdict is SizingVerdict.UNSOUND:
             meaning += f" ({estimate.verdict.meaning})"
         lines.append(f"Caution: {meaning}.")
     return "\n".join(lines)

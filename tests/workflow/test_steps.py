@@ -141,6 +141,9 @@ def test_designs_and_rare_events_are_printed_and_reported(folder):
     (folder / "studies" / "exceedance.yaml").write_text(EXCEEDANCE)
     command = ("size", "studies/exceedance.yaml", "velocity", "--probability", "0.01")
     assert "minimise" in called(*command, cwd=folder).stderr
+    cost = impactlab(*command, "--dry-run", cwd=folder).stdout
+    assert re.search(r"^runs +60,256$", cost, re.MULTILINE), "ten estimates after 256 pilot runs"
+    assert not (folder / "results" / "exceedance" / "sizing.nc").exists()
     answer, *_, page = impactlab(*command, "--maximise", "velocity", cwd=folder).stdout.splitlines()
     assert page == "results/exceedance/sizing.html"
     chosen = float(re.search(r"impact velocity ([\d.]+) m/s", answer)[1])
@@ -152,6 +155,8 @@ def test_designs_and_rare_events_are_printed_and_reported(folder):
     (folder / "studies" / "rare.yaml").write_text(rare)
     answer, *_, page = impactlab("rare", "studies/rare.yaml", cwd=folder).stdout.splitlines()
     assert page == "results/rare/rare_event.html"
+    cost = impactlab("rare", "studies/rare.yaml", "--dry-run", cwd=folder).stdout
+    assert re.search(r"^runs +6,000$", cost, re.MULTILINE)
     assert 0.003 < float(re.search(r"with probability ([\d.e-]+) ", answer)[1]) < 0.0101
 
 

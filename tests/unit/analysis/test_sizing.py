@@ -96,3 +96,17 @@ def test_too_few_answers_are_refused():
             lambda designs, scores: np.full(len(scores), np.nan), depths, 1, 3, LIMIT, 0.1,
             seed=1, **SETTINGS,
         )  # fmt: skip
+
+
+def test_a_limit_that_the_lightest_design_hardly_reaches_is_not_taken_for_one_it_exceeds():
+    """At the least depth it lies 40 deviations away; then 4.5, with too few runs to tell."""
+    far = 1000 / 20**1.5 * np.exp(40 * SCATTER)
+    result = size(deflection, depths, 1, 3, far, 1e-3, seed=1, **SETTINGS)
+    assert result.verdict is SizingVerdict.UNREACHED
+    assert result.objectives.tolist() == [20, 20, 20]
+    assert result.runs < 7000, "it looked for more"
+    near = 1000 / 20**1.5 * np.exp(4.5 * SCATTER)
+    few = SETTINGS | {"runs": 2000}
+    assert size(deflection, depths, 1, 3, near, 1e-4, seed=1, **few).verdict not in (
+        SizingVerdict.UNREACHED, SizingVerdict.USABLE,
+    )  # fmt: skip

@@ -35,6 +35,20 @@ def test_runs_are_kept_and_give_the_same_bits_for_any_number_of_workers(tmp_path
     assert page.count("<figure") == 1
 
 
+@pytest.mark.parametrize("surrogate", [False, True])
+def test_correlations_are_those_of_the_copula(tmp_path, surrogate):
+    parameters = {"load": il.Normal(5, 1), "strength": il.Normal(11, 1)}
+    pairs = [("load", "strength", -0.5)]
+    sampling = il.Pawn(samples=128, seed=2, parameters=parameters, correlations=pairs)
+    rare = il.rare_event(study(tmp_path, sampling=sampling), surrogate=surrogate, workers=1)
+    linear = 2 * np.sin(np.pi * -0.5 / 6)
+    exact = norm.sf(6 / np.sqrt(2 - 2 * linear))
+    assert rare.low < exact < rare.high
+    assert rare.first_order == pytest.approx(exact, rel=0.3)
+    # on the limit load and strength differ by nothing: both are three deviations away
+    np.testing.assert_allclose(rare.design_point, [3, -3], atol=0.4)
+
+
 def test_words_are_drawn_with_their_weights(tmp_path):
     def response(grade, load):
         return load + {"good": 0.0, "poor": 2.0}[grade]
@@ -55,6 +69,34 @@ def test_words_are_drawn_with_their_weights(tmp_path):
     assert np.isnan(rare.first_order), "no plane lies along words"
 
 
+def test_a_process_places_the_same_runs_for_any_number_of_workers(tmp_path):
+    first = il.rare_event(study(tmp_path / "one"), surrogate=True, workers=1)
+    stored = sorted((tmp_path / "one" / "load" / "rare_event").rglob("*.npz"))
+    assert stored
+    times = [file.stat().st_mtime_ns for file in stored]
+    again = il.rare_event(study(tmp_path / "one"), surrogate=True, workers=1)
+    assert times == [file.stat().st_mtime_ns for file in stored], "runs were solved again"
+    other = il.rare_event(study(tmp_path / "two"), surrogate=True, workers=2)
+    assert first.probability.item() == again.probability.item() == other.probability.item()
+    assert first.low < norm.sf(6 / np.sqrt(2)) < first.high
+    assert first.runs < 400
+    assert "for a Gaussian process" in first.answer
+    assert first.attrs["arguments"] == " --surrogate"
+
+
+def test_the_report_of_the_study_tells_the_answer(tmp_path):
+    limited = study(tmp_path)
+    limited.run(workers=1)
+    answer = il.rare_event(limited, surrogate=True, workers=1).answer.splitlines()[0]
+    page = limited.report().read_text("utf-8").replace("\xa0", " ")
+    assert f"Rare event:</strong> {answer.removesuffix('.')} (<a" in page
+    assert 'href="rare_event.html"' in page
+    changed = study(tmp_path, limits={"value": 1})
+    changed.run(workers=1, replace=True)
+    page = changed.report().read_text("utf-8")
+    assert "of an earlier text of this study, not of these runs (<a" in page
+
+
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
@@ -71,6 +113,20 @@ def test_studies_without_distributions_or_limit_are_refused(tmp_path, changes, r
 
 
 def test_settings_out_of_range_are_refused(tmp_path):
-    for settings in ({"samples": 10}, {"runs": 500}, {"coefficient_of_variation": 2.0}):
+    for settings in (
+        {"samples": 10},
+        {"runs": 500},
+        {"runs": 200, "surrogate": True},
+        {"coefficient_of_variation": 2.0},
+    ):
         with pytest.raises(ValueError, match=next(iter(settings))):
             il.rare_event(study(tmp_path), workers=1, **settings)
+
+
+def test_a_process_of_many_parameters_is_refused(tmp_path):
+    names = [f"x{number}" for number in range(17)]
+    sampling = il.Pawn(samples=128, parameters={name: il.Normal(0, 1) for name in names})
+    function = lambda **values: sum(values.values())  # noqa: E731
+    many = study(tmp_path, function, sampling=sampling)
+    with pytest.raises(ValueError, match="at most 16 parameters, and 17 vary"):
+        il.rare_event(many, surrogate=True, workers=1)

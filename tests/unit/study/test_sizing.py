@@ -51,6 +51,29 @@ def test_the_least_area_is_found_with_the_same_bits_for_any_number_of_workers(tm
     assert page.count("<figure") == 1
 
 
+def test_correlations_count_but_not_with_what_is_chosen(tmp_path):
+    def of(pair):
+        sampling = il.Pawn(samples=128, parameters=PARAMETERS, correlations=[(*pair, -0.7)])
+        return il.Study(
+            title="Rod", function=stress_minus_strength, limits={"value": 0}, results=tmp_path,
+            sampling=sampling,
+        )  # fmt: skip
+
+    settings = {"probability": 1e-3, "minimise": "area", "workers": 1}
+    result = il.size(of(("load", "strength")), ["area"], **settings)
+    linear = 2 * np.sin(np.pi * -0.7 / 6)
+
+    def excess(area):
+        deviation = np.sqrt(1 / area**2 + 0.25 - linear / area)
+        return norm.logsf((6 - 5 / area) / deviation) - np.log(1e-3)
+
+    exact = brentq(excess, 1, 3)
+    assert exact > 1.05 * exact_area(1e-3)
+    assert exact <= result.area[0] < 1.03 * exact
+    with pytest.raises(ValueError, match="area is chosen, and so cannot correlate with load"):
+        il.size(of(("load", "area")), ["area"], **settings)
+
+
 def test_the_greatest_load_is_the_one_with_the_probability(tmp_path):
     ranges = PARAMETERS | {"load": il.Uniform(3, 9), "area": il.Normal(1.5, 0.05)}
     declared = il.Study(
@@ -86,12 +109,15 @@ def test_settings_that_are_wrong_are_refused(tmp_path, variables, settings, reas
         il.size(study(tmp_path), variables, workers=1, **settings)
 
 
-def test_a_limit_that_no_run_reaches_gives_no_design(tmp_path):
+def test_a_limit_that_no_run_reaches_is_met_by_the_best_end(tmp_path):
     rod = study(tmp_path, limits={"value": 1000})
     result = il.size(rod, ["area"], probability=0.01, minimise="area", workers=1)
-    assert result.answer.startswith("No design: no estimate allowed meets the probability")
-    assert "unknown, because the runs allowed do not reach the limit" in result.answer
+    assert result.area.values.tolist() == [1, 1, 1]
+    assert "has area 1." in result.answer
+    assert "Probability there: too small to estimate" in result.answer
+    assert "Caution: even the best end of the ranges hardly reaches the limit" in result.answer
     assert "nan" not in result.answer
+    assert (tmp_path / "rod" / "sizing.html").exists()
 
 
 def test_the_mass_is_that_of_the_beam(tmp_path):
