@@ -19,6 +19,7 @@ import numpy as np
 import scipy  # its stats and special are loaded when first used
 
 from impactlab.types import Floats
+from impactlab.verdicts import Verdict
 
 FEWEST_PAIRS = 20
 """Pairs below which no estimate is given."""
@@ -29,6 +30,18 @@ EXPECTED_EVENTS = 6
 LEAST_CORRELATION = 0.85
 """Correlation of both models below which no variance is given."""
 VARIANCE_SAFETY = 1.1  # standard errors of variances of skewed outputs are too small
+
+
+class FidelityVerdict(Verdict):
+    """Verdicts on statistics of a slow model by runs of a fast one."""
+
+    USABLE = True, "every run has an answer, and the fast model saves slow runs"
+    LITTLE_SAVING = True, "the models hardly correlate: slow runs alone do as well"
+    MISSING_RUNS = (
+        False,
+        "runs without an answer, and their pairs, are left out: these may be the extreme ones",
+    )
+    NO_STATISTICS = False, "too few pairs have answers, or these do not vary"
 
 
 @dataclass(frozen=True)
@@ -164,8 +177,7 @@ class Multifidelity:
         """
         if not (np.isfinite(cost_ratio) and cost_ratio > 0.0):
             raise ValueError(f"Multifidelity: cost_ratio = {cost_ratio}: must be positive")
-        square = self.correlation**2
-        return max(1.0, float(np.sqrt(cost_ratio * square / max(1.0 - square, 1e-12))))
+        return best_ratio(self.correlation, cost_ratio)
 
     def mean(self) -> FidelityEstimate:
         """Return the mean of the slow model.
@@ -287,6 +299,12 @@ class Multifidelity:
         estimate = float(pseudo.mean())
         plain = float(np.sqrt(values.var(ddof=1) / runs))
         return FidelityEstimate(estimate, error, _interval(estimate, factor * error, scale), plain)
+
+
+def best_ratio(correlation: float, cost_ratio: float) -> float:
+    """Return fast runs per slow run, at least 1, that serve the mean best for a budget."""
+    square = correlation**2
+    return max(1.0, float(np.sqrt(cost_ratio * square / max(1.0 - square, 1e-12))))
 
 
 def _outputs(name: str, values: Any) -> Floats:

@@ -28,6 +28,7 @@ _COMMANDS = {
     "calibrate": "impactlab.cli.results:calibrate",
     "rare": "impactlab.cli.results:rare",
     "size": "impactlab.cli.results:size",
+    "multifidelity": "impactlab.cli.questions:multifidelity",
     "verify": "impactlab.cli.solve:verify",
     "figures": "impactlab.cli.results:figures",
     "animate": "impactlab.cli.results:animate",
