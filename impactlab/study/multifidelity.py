@@ -295,7 +295,7 @@ def _answer(result: xr.Dataset) -> str:
         if chance := stated(result, row, "exceedance"):
             units = str(result["response_units"].values[row])
             parts.append(f"above {engineering(float(result['limit'][row]), units)} with {chance}")
-        parts.append(f"correlation {float(result['correlation'][row]):.2f}")
+        parts.append(f"correlation {float(result['correlation'][row]):.3f}")
         if parts[1:]:
             lines.append(f"{str(response).replace('_', ' ').capitalize()}: {'; '.join(parts)}.")
     slow, fast = float(result["slow_seconds"]), float(result["fast_seconds"])

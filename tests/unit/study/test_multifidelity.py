@@ -1,9 +1,12 @@
 """Statistics of a study's slow model: stored runs, workers, missing runs, budgets, refusals."""
 
+from html import unescape
+
 import numpy as np
 import pytest
 
 import impactlab as il
+from impactlab.model.quantities import si
 
 
 def power_of(x, noise, power):
@@ -14,10 +17,13 @@ def sometimes_failing(x, noise, power):
     return np.nan if power == 2 and x > 0.9 else power_of(x, noise, power)
 
 
+FINE = {"nodes": 101, "scheme": "leapfrog"}
+
+
 def study(folder, function=power_of, **changes):
     parameters = {"x": il.Uniform(0, 1), "noise": il.Normal(0, 1), "power": 1.7}
     arguments = {"function": function, "limits": {"value": 3}}
-    arguments |= {"sampling": il.Pawn(samples=128, parameters=parameters)} | changes
+    arguments |= {"sampling": il.Pawn(samples=128, seed=2, parameters=parameters)} | changes
     return il.Study(title="Power", results=folder, **arguments)
 
 
@@ -53,20 +59,22 @@ def test_runs_are_kept_and_give_the_same_bits_for_any_number_of_workers(tmp_path
         assert low < value < high, name
     page = (tmp_path / "one" / "power" / "multifidelity.html").read_text("utf-8")
     headline = results[0].answer.splitlines()[0].removesuffix(".")
-    assert headline in page.replace("\xa0", " ")
+    assert headline in unescape(page).replace("\xa0", " ")
     assert page.count("<figure") == 1
 
 
+@pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 def test_statistics_are_those_of_the_slow_model_of_impacts(tmp_path):
     """Held against plain runs of the slow model at other draws."""
-    result = il.multifidelity(impacts(tmp_path), {"nodes": 41}, workers=1)
+    result = il.multifidelity(impacts(tmp_path), FINE, workers=1)
     rng = np.random.default_rng(5)
     varied = {
         "velocity": rng.uniform(1.5, 2.5, 1000),
         "beam_depth": rng.uniform(26e-3, 29e-3, 1000),
     }
-    fine = il.Discretisation(nodes=41, scheme="modal")
-    plain = il.simulate_many(il.paper_impact(), fine, duration="0.8 ms", varied=varied)
+    plain = il.simulate_many(
+        il.paper_impact(), il.Discretisation(**FINE), duration="0.8 ms", varied=varied
+    )
     for name in ("peak_force", "maximum_indentation"):
         values, row = plain[name].values, result.sel(response=name)
         for statistic, value in (("mean", values.mean()), ("standard_deviation", values.std())):
@@ -81,14 +89,14 @@ def test_statistics_are_those_of_the_slow_model_of_impacts(tmp_path):
 
 
 def test_a_budget_sets_the_numbers_of_both_models(tmp_path):
-    for budget in ("0.2 s", "0.4 s"):
-        result = il.multifidelity(impacts(tmp_path), {"nodes": 101}, budget=budget, workers=1)
+    for budget in ("50 ms", "0.1 s"):
+        result = il.multifidelity(impacts(tmp_path), FINE, budget=budget, workers=1)
         pairs, runs = int(result.pairs), int(result.runs)
         cost = pairs * result.slow_seconds + (runs - pairs) * result.fast_seconds
-        assert cost.item() == pytest.approx(float(budget.split()[0]), rel=0.05)
+        assert cost.item() == pytest.approx(si(budget, "s"), rel=0.05)
         assert (runs - pairs) / pairs == pytest.approx(result.best_ratio.item(), rel=0.02)
-    with pytest.raises(ValueError, match="budget = 10 ms: 20 pairs need about"):
-        il.multifidelity(impacts(tmp_path), {"nodes": 101}, budget="10 ms", workers=1)
+    with pytest.raises(ValueError, match="budget = 1 ms: 20 pairs need about"):
+        il.multifidelity(impacts(tmp_path), FINE, budget="1 ms", workers=1)
 
 
 def test_pairs_without_an_answer_are_left_out_and_counted(tmp_path):
@@ -136,7 +144,8 @@ def test_three_dimensional_runs_are_those_at_the_first_draws(tmp_path):
         sampling=il.Pawn(samples=128, parameters=parameters),
     )
     assert result.slow.notnull().all()
-    assert same.estimate(workers=1).seconds == pytest.approx(128 * result.slow_seconds, rel=0.3)
+    cost = same.estimate(workers=1).seconds / 128
+    assert cost == pytest.approx(result.slow_seconds.item(), rel=0.3)
 
 
 @pytest.mark.parametrize(
