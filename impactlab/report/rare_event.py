@@ -10,7 +10,6 @@ from impactlab.figures.draw import Drawing, draw
 from impactlab.figures.rare_event import FIGURES
 from impactlab.report.page import Cell, Row, Section, Table, write_listed
 from impactlab.study import MULTIFIDELITY, RARE_EVENT, SIZING
-from impactlab.study.multifidelity import stated
 
 
 def report_rare_event(result: xr.Dataset, folder: Path) -> Path:
@@ -70,6 +69,8 @@ def report_sizing(result: xr.Dataset, folder: Path) -> Path:
 
 def report_multifidelity(result: xr.Dataset, folder: Path) -> Path:
     """Write the report of statistics by two models into a study's folder; return its path."""
+    from impactlab.study.multifidelity import stated  # late: the other questions do without
+
     figures = folder / MULTIFIDELITY / "figures"
     draw(_drawings(result), figures, str(result.attrs.get("study")))
     rows: list[Row] = []
