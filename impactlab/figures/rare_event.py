@@ -82,11 +82,11 @@ def front(result: xr.Dataset, _: xr.Dataset) -> Figure:
 )
 def pairs(result: xr.Dataset, _: xr.Dataset) -> Figure:
     """Draw the slow model's outputs over those of the fast one, with the line through them."""
-    both = result["fast"] + result["slow"]
-    rows = np.flatnonzero(both.notnull().any("pair").values)[:_MOST_PANELS]
+    complete = (result["fast"] + result["slow"]).notnull().values
+    rows = np.flatnonzero(complete.any(axis=1))[:_MOST_PANELS]
     figure, axes = style.panels(rows.size, columns=min(rows.size, 2), height=62)
     for ax, row in zip(axes, rows, strict=True):
-        alone = result.isel(response=row, pair=np.flatnonzero(both.values[row] == both.values[row]))
+        alone = result.isel(response=row, pair=np.flatnonzero(complete[row]))
         attrs = {"units": str(alone["response_units"].item())}
         unit = labels.display(alone["slow"].assign_attrs(attrs))
         fast, slow = unit(alone["fast"].values), unit(alone["slow"].values)

@@ -5,6 +5,7 @@ slow model are at the first of them. Costs are estimates, not measured times, so
 depends on the machine.
 """
 
+import logging
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import ceil
@@ -17,7 +18,6 @@ import xarray as xr
 from impactlab.analysis.multifidelity import (
     FEWEST_PAIRS,
     FidelityEstimate,
-    FidelityVerdict,
     Multifidelity,
     best_ratio,
 )
@@ -39,12 +39,29 @@ from impactlab.study.schema.yaml_file import read_mapping
 from impactlab.study.solvers import solver_named
 from impactlab.types import Floats
 from impactlab.validation.fields import plain
-from impactlab.verdicts import flagged
+from impactlab.verdicts import Verdict, flagged
+
+log = logging.getLogger(__name__)
 
 _MOST_PAIRS = 10_000
 _MOST_RUNS = 20_000  # of the fast model: of more, the mean of a response hardly gains
 _LITTLE = 1.2  # saving below which the fast model is said to be of little use
-STATISTICS = ("mean", "standard_deviation", "exceedance")
+STATISTICS = (
+    *("mean", "standard_deviation", "lower_quartile", "median", "upper_quartile"),
+    "exceedance",
+)
+
+
+class FidelityVerdict(Verdict):
+    """Verdicts on statistics of a slow model by runs of a fast one."""
+
+    USABLE = True, "every run has an answer, and the fast model saves slow runs"
+    LITTLE_SAVING = True, "the models hardly correlate: slow runs alone do as well"
+    MISSING_RUNS = (
+        False,
+        "runs without an answer, and their pairs, are left out: these may be the extreme ones",
+    )
+    NO_STATISTICS = False, "too few pairs have answers, or these do not vary"
 
 
 def multifidelity(
@@ -77,17 +94,20 @@ def multifidelity(
     slow = replace(fast, declared=slow_study, first=first, folder=fast.folder.with_name("high"))
     if not isinstance(study, ImpactStudy) and (budget or not runs):
         raise ValueError(f"{owner}: runs: must be stated, because what functions cost is not known")
-    scores = _scores(fast, FEWEST_PAIRS if budget else pairs)
+    pairs = FEWEST_PAIRS if budget else pairs
+    scores = _scores(fast, pairs)
     costs = [_cost(model, scores) for model in (fast, slow)]
+    least = pairs * costs[1]
+    if budget and budget < least:
+        needed = f"{pairs} runs of the slow model alone need about {time(least)}"
+        raise ValueError(f"{owner}: budget = {time(budget)}: {needed}")
+    if least > 0.0:
+        log.info("%d runs of the slow model: about %s of one core", pairs, time(least))
     outputs = [_outputs(model, scores) for model in (fast, slow)]
     ratio = _best_ratio(outputs[0].values, outputs[1].values, costs[1] / costs[0])
     if budget:
-        pairs = min(int(budget / (costs[1] + ratio * costs[0])), _MOST_PAIRS)
-        if pairs < FEWEST_PAIRS:  # kept, for a larger budget
-            least = time(FEWEST_PAIRS * (costs[1] + ratio * costs[0]))
-            raise ValueError(
-                f"{owner}: budget = {time(budget)}: {FEWEST_PAIRS} pairs need about {least}"
-            )
+        most = int(budget / (costs[1] + ratio * costs[0]))
+        pairs = min(max(most, FEWEST_PAIRS), _MOST_PAIRS)
         outputs[1] = _outputs(slow, _scores(fast, pairs))
     runs = runs or min(ceil(ratio * pairs), _MOST_RUNS)
     runs = max(runs, 2 * pairs)
@@ -162,9 +182,9 @@ def _best_ratio(low: Floats, high: Floats, cost_ratio: float) -> float:
     """Return fast runs per slow run that serve the mean of every response."""
     ratios = [2.0]  # as few as a statistic needs
     for fast, slow in zip(low, high, strict=True):
-        both = np.isfinite(fast) & np.isfinite(slow)
-        if cost_ratio > 0.0 and both.sum() > 2 and np.ptp(fast[both]) and np.ptp(slow[both]):
-            ratios.append(best_ratio(np.corrcoef(fast[both], slow[both])[0, 1], cost_ratio))
+        paired = np.isfinite(fast) & np.isfinite(slow)
+        if cost_ratio > 0.0 and paired.sum() > 2 and np.ptp(fast[paired]) and np.ptp(slow[paired]):
+            ratios.append(best_ratio(np.corrcoef(fast[paired], slow[paired])[0, 1], cost_ratio))
     return min(max(ratios), cost_ratio + 1.0)  # half of all time at most
 
 
@@ -187,10 +207,13 @@ def _statistics(
     calls: dict[str, Callable[[], FidelityEstimate]] = {
         "mean": models.mean,
         "standard_deviation": lambda: _root(models.variance()),
+        "lower_quartile": lambda: models.quantile(0.25),
+        "median": lambda: models.quantile(0.5),
+        "upper_quartile": lambda: models.quantile(0.75),
     }
     if limit is not None:
         calls["exceedance"] = lambda: models.exceedance(limit)
-    entries: dict[str, FidelityEstimate | str] = dict.fromkeys(STATISTICS, "")
+    entries: dict[str, FidelityEstimate | str] = dict.fromkeys(STATISTICS, "")  # in this order
     for name, call in calls.items():
         try:
             entries[name] = call()
@@ -225,8 +248,8 @@ def _dataset(model: ScoreRuns, low: xr.DataArray, high: xr.DataArray) -> xr.Data
             else:
                 estimate[row, column] = entry.value, *entry.interval
                 saving[row, column] = entry.saving
-        both_known = np.isfinite(fast[:pairs]) & np.isfinite(slow)
-        missing[row] = pairs - both_known.sum() + np.isnan(fast[pairs:]).sum()
+        paired = np.isfinite(fast[:pairs]) & np.isfinite(slow)
+        missing[row] = pairs - paired.sum() + np.isnan(fast[pairs:]).sum()
         limits[row] = np.nan if limit is None else limit
         if isinstance(models, Multifidelity):
             correlation[row] = models.correlation
@@ -251,13 +274,13 @@ def _dataset(model: ScoreRuns, low: xr.DataArray, high: xr.DataArray) -> xr.Data
         "slow": (("response", "pair"), high.values, pair),
     }
     codes = xr.DataArray(verdicts, dims="response")
-    both = {"long_name": "estimate, and ends of its interval"}
+    ends = {"long_name": "estimate, and ends of its interval"}
     coords = {
         "response": low["response"],
         "response_units": low["response_units"],
         "response_long_name": low["response_long_name"],
         "statistic": list(STATISTICS),
-        "bound": ("bound", ["estimate", "low", "high"], both),
+        "bound": ("bound", ["estimate", "low", "high"], ends),
     }
     return xr.Dataset(data, coords).assign(
         response_verdict=flagged(codes, FidelityVerdict, "verdict on the statistics"),
@@ -290,6 +313,8 @@ def _answer(result: xr.Dataset) -> str:
         lines = [f"No statistics of the {name} with {result.attrs['high']}: {reason}."]
     for row, response in enumerate(result["response"].values):
         parts = [f"mean {mean}"] if (mean := stated(result, row, "mean")) else []
+        if middle := stated(result, row, "median"):
+            parts.append(f"median {middle}")
         if spread := stated(result, row, "standard_deviation"):
             parts.append(f"standard deviation {spread}")
         if chance := stated(result, row, "exceedance"):
@@ -315,8 +340,8 @@ def _answer(result: xr.Dataset) -> str:
     worst = list(FidelityVerdict)[int(result["verdict"])]
     if worst is not FidelityVerdict.USABLE:
         count = int(result["missing"].max())
-        what = f" (up to {count} a response)" if worst is FidelityVerdict.MISSING_RUNS else ""
-        lines.append(f"Caution: {worst.meaning}{what}.")
+        most = f" (up to {count} a response)" if worst is FidelityVerdict.MISSING_RUNS else ""
+        lines.append(f"Caution: {worst.meaning}{most}.")
     return "\n".join(lines)
 
 
