@@ -7,6 +7,7 @@ from .api.definition import Study as Study
 from .api.experiment import calibrate as calibrate
 from .api.experiment import compare as compare
 from .api.experiment import compare_studies as compare_studies
+from .api.experiment import multifidelity as multifidelity
 from .api.experiment import rare_event as rare_event
 from .api.experiment import size as size
 from .api.laws import register as register

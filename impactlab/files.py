@@ -112,6 +112,7 @@ CONTENTS = {
     "calibration": "impactlab calibrate",
     "rare_event": "impactlab rare",
     "sizing": "impactlab size",
+    "multifidelity": "impactlab multifidelity",
     "comparison": "impactlab compare",
     "impact": "impactlab simulate",
     "figure": "impactlab figures",

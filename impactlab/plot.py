@@ -255,7 +255,8 @@ def figure(name: str, runs: xr.Dataset, analysis: xr.Dataset | None = None) -> A
     name : str
         Name of the figure's file, such as "parameter_effects".
     runs : xarray.Dataset
-        Runs of a study, or the result of `il.rare_event` ("likeliest_way") or `il.size` ("front").
+        Runs of a study, or the result of `il.rare_event` ("likeliest_way"), `il.size` ("front") or
+        `il.multifidelity` ("pairs").
     analysis : xarray.Dataset, optional
         Result of `il.analyse` for these runs.
 

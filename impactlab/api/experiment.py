@@ -1,7 +1,8 @@
 """A study beside measurements, comparison and calibration; and studies beside each other."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -9,6 +10,7 @@ from impactlab.analysis.analyse import analyse
 from impactlab.analysis.measurements import compared
 from impactlab.api.definition import Study
 from impactlab.api.folder import CORES, local_engine
+from impactlab.model.quantities import Quantity, si
 from impactlab.study.schema.measurement_files import MeasurementSource, read_measurements
 
 
@@ -330,4 +332,71 @@ def size(
         target=coefficient_of_variation,
     )
     report_sizing(result, study.folder)
+    return result
+
+
+def multifidelity(
+    study: Study,
+    high: Mapping[str, Any],
+    *,
+    pairs: int = 40,
+    runs: int = 0,
+    budget: Quantity = 0.0,
+    workers: int = CORES,
+) -> xr.Dataset:
+    """Estimate statistics of a slow model from few of its runs and many of the study's model.
+
+    Both have the distributions of the study (docs/sensitivity.md); see `Multifidelity` for outputs
+    of models of one's own. The runs are kept in the study's folder: the same call resumes where it
+    stopped.
+
+    Parameters
+    ----------
+    study : Study
+        Sample of any method, of which the distributions, the seed, responses and limits count.
+    high : mapping of str to Quantity
+        Values of the slow model's parameters in place of the study's, such as
+        `{"beam_model": "solid", "elements_per_radius": 2}`.
+    pairs : int, default 40
+        Number of runs of the slow model, at least 20.
+    runs : int, default 0
+        Number of runs of the study's model; 0: the best for the costs and correlations of the
+        pairs.
+    budget : Quantity, default 0
+        Time of one core, in s, in place of `pairs`: 20 pairs tell how many it pays for.
+    workers : int, optional
+        Number of threads; by default that of the machine's cores.
+
+    Returns
+    -------
+    xarray.Dataset
+        `estimate` on (response, statistic, bound), `saving`, `correlation`, costs, `verdict` and
+        the pairs; the attribute `answer` holds the findings in sentences. They are kept in the
+        study's folder as multifidelity.nc, with the report multifidelity.html.
+
+    Raises
+    ------
+    StudyError
+        If the study has no sample or correlations, or cannot have these values.
+    ValueError
+        If a setting is out of range, or another study has results of this name.
+
+    Examples
+    --------
+    >>> study = il.Study(
+    ...     title="Power", function=lambda x, power: (1 + x) ** power, limits={"value": 3},
+    ...     sampling=il.Pawn(samples=128, parameters={"x": il.Uniform(0, 1), "power": 1}))
+    >>> both = il.multifidelity(study, {"power": 2}, runs=2000, workers=1)
+    >>> mean = both.estimate.sel(response="value", statistic="mean")
+    >>> bool(mean.sel(bound="low") < 7 / 3 < mean.sel(bound="high"))
+    True
+    """
+    from impactlab.report.rare_event import report_multifidelity
+    from impactlab.study.multifidelity import multifidelity as statistics
+
+    seconds, engine = si(budget, "s"), local_engine(workers)
+    result = statistics(
+        study.declared, study.folder, engine, high, pairs=pairs, runs=runs, budget=seconds
+    )
+    report_multifidelity(result, study.folder)
     return result

@@ -2,7 +2,6 @@
 
 from impactlab.analysis.convergence.axes import Axis, Growth
 from impactlab.fem3d.wing import MODEL, SIZES, SOLID
-from impactlab.methods.grid import Grid
 from impactlab.solver import outputs
 from impactlab.study.schema.consistency import Reasons, size_keys
 from impactlab.study.schema.declarations import StudyFile
@@ -33,8 +32,6 @@ def reasons(file: StudyFile) -> Reasons:
         yield f"discretisation.{SIZES[0]}", f"is required for {model} ({times})"
     for key in sizes[1:]:
         yield key, f"has no effect beside {sizes[0]}: take one of them out"
-    if not isinstance(file.sampling, Grid):
-        yield "sampling.method", f"{model} needs method: grid, because a run takes minutes"
     if file.discretisation[1] is not None:
         yield "discretisation.auto", f"is not possible with {model}: state the discretisation"
     if file.store.profiles:

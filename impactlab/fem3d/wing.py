@@ -11,7 +11,7 @@ MODEL = FurtherModel(
     label="3-D FE model",
     solver="witness",
     trait="fem3d",
-    advice="use `impactlab witness`, impactlab.fem3d.solver.solve, or a study of the method grid",
+    advice="use `impactlab witness`, impactlab.fem3d.solver.solve, or a study",
     sizes=(
         Size(
             name="element_size",

@@ -1,4 +1,4 @@
-"""Figures of rare events: the likeliest way there, and designs over the probability."""
+"""Figures of questions to a study: the likeliest way, designs, and pairs of two models."""
 
 from typing import Any
 
@@ -7,6 +7,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from impactlab.figures import labels, record, style
+
+_MOST_PANELS = 6
 
 
 @record.figure(
@@ -71,4 +73,34 @@ def front(result: xr.Dataset, _: xr.Dataset) -> Figure:
     return style.finish(figure)
 
 
-FIGURES = likeliest_way, front
+@record.figure(
+    "Both models, run by run",
+    "Each dot is a run of both models; the line through them corrects the fast one, and the dotted "
+    "line is where both agree.",
+    lambda result, _: "slow" in result and bool((result["fast"] + result["slow"]).notnull().any()),
+    lambda *_: (),
+)
+def pairs(result: xr.Dataset, _: xr.Dataset) -> Figure:
+    """Draw the slow model's outputs over those of the fast one, with the line through them."""
+    complete = (result["fast"] + result["slow"]).notnull().values
+    rows = np.flatnonzero(complete.any(axis=1))[:_MOST_PANELS]
+    figure, axes = style.panels(rows.size, columns=min(rows.size, 2), height=62)
+    for ax, row in zip(axes, rows, strict=True):
+        alone = result.isel(response=row, pair=np.flatnonzero(complete[row]))
+        attrs = {"units": str(alone["response_units"].item())}
+        unit = labels.display(alone["slow"].assign_attrs(attrs))
+        fast, slow = unit(alone["fast"].values), unit(alone["slow"].values)
+        ends = np.array([fast.min(), fast.max()])
+        ax.plot(ends, ends, color="0.4", linestyle=":", linewidth=0.8, label="both agree")
+        if np.ptp(fast):
+            ax.plot(ends, np.polyval(np.polyfit(fast, slow, 1), ends), color=style.COLOURS[1],
+                    label="line through the runs")  # fmt: skip
+        ax.plot(fast, slow, "o", color=style.COLOURS[0], markersize=3, label="runs of both")
+        text = labels.response(str(alone["response"].item()))
+        ax.set_xlabel(labels.wrapped_axis(f"{text}, fast model", unit.symbol))
+        ax.set_ylabel(labels.wrapped_axis(f"{text}, slow model", unit.symbol))
+    style.legend(figure)
+    return style.finish(figure)
+
+
+FIGURES = likeliest_way, front, pairs

@@ -1,4 +1,4 @@
-"""Reports of a rare event, and of a design with a small probability: the answer first."""
+"""Reports of questions to a study: rare events, designs, two models; the answer first."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -12,7 +12,7 @@ from impactlab.figures.draw import Drawing, draw
 from impactlab.figures.rare_event import FIGURES
 from impactlab.files import read_netcdf
 from impactlab.report.page import Cell, Row, Section, Table, write_listed
-from impactlab.study import RARE_EVENT, SIZING
+from impactlab.study import MULTIFIDELITY, RARE_EVENT, SIZING
 
 
 def report_rare_event(result: xr.Dataset, folder: Path) -> Path:
@@ -63,6 +63,37 @@ def report_sizing(result: xr.Dataset, folder: Path) -> Path:
     tables = [Table("All designs tried, in order", ["Design", *heads], rows)]
     sections = [Section("designs", "Designs", tables=tables)]
     return _written(result, folder, figures, SIZING, "Design", "size", sections)
+
+
+def report_multifidelity(result: xr.Dataset, folder: Path) -> Path:
+    """Write the report of statistics by two models into a study's folder; return its path."""
+    from impactlab.study.multifidelity import stated  # late: the other questions do without
+
+    figures = folder / MULTIFIDELITY / "figures"
+    draw(_drawings(result), figures, str(result.attrs.get("study")))
+    rows: list[Row] = []
+    for row, response in enumerate(result["response"].values):
+        for column, statistic in enumerate(result["statistic"].values):
+            text, reason = (
+                stated(result, row, statistic),
+                str(result["refusal"].values[row, column]),
+            )
+            if text or reason:
+                cell = Cell(text, "number") if text else Cell("none", "warning", reason)
+                saving = _cell(float(result["saving"].values[row, column]))
+                names = labels.response(str(response)), labels.sentence(str(statistic))
+                rows.append([*names, cell, saving])
+    head = ["Response", "Statistic", "Estimate and interval", "Slow runs saved per slow run"]
+    numbers: list[Row] = [
+        [labels.sentence(str(result[name].attrs["long_name"])), _cell(result[name].item())]
+        for name in ("pairs", "runs", "slow_seconds", "fast_seconds", "best_ratio")
+    ]
+    tables = [
+        Table("Statistics of the slow model", head, rows),
+        Table("Runs and costs", ["Number", "Value"], numbers),
+    ]
+    sections = [Section("numbers", "The estimates", tables=tables)]
+    return _written(result, folder, figures, MULTIFIDELITY, "Two models", "multifidelity", sections)
 
 
 def answers_beside(runs: xr.Dataset, folder: Path) -> Iterator[tuple[str, str, str]]:

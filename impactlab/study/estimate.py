@@ -39,7 +39,7 @@ _BEGINNING = 0.2  # seconds of any study beside its runs: workers and files
 _RUN, _STORED = 2e-6, 2e-7
 """Seconds of the main process per run (its key and place), and per number that it stores."""
 _USUAL_RUNS, _USUAL_DURATION, _USUAL_SAMPLES = 10_000, 0.012, 1000
-_MOST = 4096  # runs of a cost sample
+_MOST, _FEW = 4096, 32  # runs of a cost sample; of models of wings, whose meshes take time
 _TAIL = 1e-3  # probability of either tail of a distribution that a cost sample leaves out
 
 
@@ -226,7 +226,7 @@ def _cost_sample(study: ImpactStudy) -> dict[str, Array]:
     """Return varied parameters of some runs: all of a small grid, else _MOST, without a sampler."""
     sampling, random = study.sampling, np.random.default_rng(0)
     if isinstance(sampling, RandomSample):
-        number = min(study.sampling.runs, _MOST)
+        number = min(study.sampling.runs, _FEW if further_models(study) else _MOST)
         return {
             name: distribution.quantile(random.uniform(_TAIL, 1 - _TAIL, number))
             for name, distribution in sampling.varied.items()

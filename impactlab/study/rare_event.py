@@ -37,47 +37,42 @@ _MATTERS = 0.5  # standard deviations from which on the answer names a parameter
 
 
 @dataclass
-class LimitRuns:
-    """Runs of a study's solver at standard normal scores, and the response that has a limit.
+class ScoreRuns:
+    """Runs of a study's solver at standard normal scores.
 
     Scores are independent; with correlations, those of the parameters are their Gaussian copula.
     declared: the study, with a discretisation. first: its first run, as a design. folder: of the
-    runs, which are not solved again. units: of the response, known after the first runs.
+    runs, which are not solved again.
     """
 
     declared: AnyStudy
     sampling: RandomSample
     first: xr.Dataset
-    response: str
-    limit: float
     folder: Path
     engine: Engine
-    units: str = ""
 
     @classmethod
     def of(cls, study: AnyStudy, folder: Path, engine: Engine, kind: str) -> Self:
         """Return the runs of a study, kept in `folder`/`kind`.
 
-        Raises StudyError for a study without a sample or with other than one limit, ValueError
-        where another study has results in `folder`.
+        Raises StudyError for a study without a sample, ValueError where another study has results
+        in `folder`.
         """
-        sampling, response, limit = limited_sample(study)
+        sampling = random_sample(study)
         check_unclaimed(study, folder / "runs.nc")
         declared = steps.resolved(study, folder, engine) or study
         first = design(declared, 0, 1).assign_attrs(histories=0, profiles=0)
-        return cls(declared, sampling, first, response, limit, folder / kind, engine)
+        return cls(declared, sampling, first, folder / kind, engine)
 
-    def outputs(self, scores: Floats) -> Floats:
-        """Return the response at standard normal scores (runs, parameter), NaN where missing."""
+    def design(self, scores: Floats) -> xr.Dataset:
+        """Return the design at standard normal scores (runs, parameter)."""
         runs = self.first.isel(run=np.zeros(len(scores), int))
         columns = {
             name: ("run", column, self.first[name].attrs)
             for name, column in self.values(scores).items()
         }
         numbers = ("run", np.arange(len(scores)), self.first["run"].attrs)
-        solved = execute(runs.assign_coords({"run": numbers} | columns), self.folder, self.engine)
-        self.units = str(solved[self.response].attrs.get("units", "1"))
-        return np.asarray(usable(solved, self.response).values[0])
+        return runs.assign_coords({"run": numbers} | columns)
 
     def deviations(self, scores: Floats) -> Floats:
         """Return the scores that correlated parameters have by themselves, (runs, parameter)."""
@@ -113,6 +108,41 @@ class LimitRuns:
             return str(value)
         return engineering(float(value), str(self.first[parameter].attrs.get("units", "1")))
 
+
+@dataclass
+class LimitRuns(ScoreRuns):
+    """Runs at standard normal scores, and the response that has a limit.
+
+    units: of the response, known after the first runs.
+    """
+
+    units: str = ""
+
+    @classmethod
+    def of(cls, study: AnyStudy, folder: Path, engine: Engine, kind: str) -> Self:
+        """Return the runs of a study, kept in `folder`/`kind`.
+
+        Raises as ScoreRuns.of, and StudyError for a study with other than one limit.
+        """
+        limited_sample(study)
+        return super().of(study, folder, engine, kind)
+
+    @property
+    def response(self) -> str:
+        """Name of the response that has a limit."""
+        return next(iter(self.declared.limits))
+
+    @property
+    def limit(self) -> float:
+        """Limit of the response, in its unit."""
+        return self.declared.limits[self.response]
+
+    def outputs(self, scores: Floats) -> Floats:
+        """Return the response at standard normal scores (runs, parameter), NaN where missing."""
+        solved = execute(self.design(scores), self.folder, self.engine)
+        self.units = str(solved[self.response].attrs.get("units", "1"))
+        return np.asarray(usable(solved, self.response).values[0])
+
     @property
     def event(self) -> str:
         """The event in words: the response exceeds its limit."""
@@ -120,20 +150,21 @@ class LimitRuns:
         return f"{self.response.replace('_', ' ')} exceeds {limit}"
 
 
-def limited_sample(study: AnyStudy) -> tuple[RandomSample, str, float]:
-    """Return the sample, the response with a limit, and this limit.
-
-    Raises StudyError for a study without a sample or with other than one limit.
-    """
-    sampling = study.sampling
-    if not isinstance(sampling, RandomSample):
-        reason = "a rare event needs distributions: use any method but grid"
+def random_sample(study: AnyStudy) -> RandomSample:
+    """Return the sample of a study. Raises StudyError for a study without one."""
+    if not isinstance(study.sampling, RandomSample):
+        reason = "has no distributions to draw from: use any method but grid"
         raise StudyError(Problem(str(study.path), "sampling.method", reason))
+    return study.sampling
+
+
+def limited_sample(study: AnyStudy) -> RandomSample:
+    """Return the sample of a study with one limit. Raises StudyError for another study."""
+    sampling = random_sample(study)
     if len(study.limits) != 1:
         reason = f"state {len(study.limits)} limits, and a rare event has one: state one response"
         raise StudyError(Problem(str(study.path), "limits", reason))
-    ((response, limit),) = study.limits.items()
-    return sampling, response, limit
+    return sampling
 
 
 def check_estimate(

@@ -42,7 +42,7 @@ def most_runs(study: AnyStudy, runs: int) -> int:
 
     Raises StudyError as LimitRuns.of.
     """
-    return pilot_runs(len(limited_sample(study)[0].varied)) + MOST_ESTIMATES * runs
+    return pilot_runs(len(limited_sample(study).varied)) + MOST_ESTIMATES * runs
 
 
 def sizing(

@@ -24,7 +24,9 @@ done("report", "runs.nc", "analysis.nc", "--figures", "figures", "--output", "re
 """
 LOADED = """
 import sys
-print(*(name for name in sys.modules if name.startswith(("impactlab.fem3d.", "impactlab.paper."))))
+rarely = ("impactlab.fem3d.", "impactlab.paper.", "impactlab.study.multifidelity",
+          "impactlab.analysis.multifidelity", "impactlab.study.rare_event")
+print(*(name for name in sys.modules if name.startswith(rarely)))
 """
 
 

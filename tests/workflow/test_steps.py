@@ -160,6 +160,17 @@ def test_designs_and_rare_events_are_printed_and_reported(folder):
     assert 0.003 < float(re.search(r"with probability ([\d.e-]+) ", answer)[1]) < 0.0101
 
 
+def test_two_models_are_printed_and_reported(folder):
+    (folder / "studies" / "exceedance.yaml").write_text(EXCEEDANCE)
+    command = "multifidelity", "studies/exceedance.yaml"
+    answer, *_, page = impactlab(
+        *command, "beam_model=euler_bernoulli", "nodes=41", "--budget", "1 s", cwd=folder
+    ).stdout.splitlines()
+    assert page == "results/exceedance/multifidelity.html"
+    assert answer.startswith("With beam_model euler_bernoulli, nodes 41, the peak force is ")
+    assert "nods" in called(*command, "nods=41", cwd=folder).stderr
+
+
 def test_a_sample_grows_and_solves_nothing_twice(folder):
     """First in two steps, then from a design in a file: the answers are in the shards by then."""
     (folder / "studies" / "growing.yaml").write_text(GROWING)

@@ -52,6 +52,31 @@ def test_the_probability_comes_from_the_pairs_where_the_fast_model_is_useless():
     assert models.exceedance(0.5).saving == pytest.approx(1.0, abs=0.05)
 
 
+@pytest.mark.parametrize("probability", [0.25, 0.5])
+def test_quantiles_are_covered_and_as_accurate_as_they_say(probability):
+    x1, x2, x3 = np.random.default_rng(0).uniform(-np.pi, np.pi, (3, 1_000_000))
+    exact = np.quantile(np.sin(x1) * (1 + 0.1 * x3**4) + 7 * np.sin(x2) ** 2, probability)
+    pairs = [ishigami_pair(seed, 0.97) for seed in range(60)]
+    quantiles = [il.Multifidelity(**pair).quantile(probability) for pair in pairs]
+    values = np.array([quantile.value for quantile in quantiles])
+    assert abs(values.mean() - exact) < 0.4 * values.std()
+    covered = np.mean([q.interval[0] < exact < q.interval[1] for q in quantiles])
+    assert covered > 0.86  # 95 % less 3 standard deviations of 60 repetitions
+    plain = np.var([np.quantile(pair["high"], probability) for pair in pairs])
+    saving = np.median([quantile.saving for quantile in quantiles])
+    assert plain / values.var() == pytest.approx(saving, rel=0.5)
+
+
+@pytest.mark.parametrize(
+    ("probability", "message"),
+    [(0.9, r"must be from 0\.25 to 0\.75"), (0.25, "7.5 of 30 runs of high are expected")],
+)
+def test_a_quantile_whose_interval_is_not_sound_is_refused(probability, message):
+    pair = ishigami_pair(1, 0.9, runs=30)
+    with pytest.raises(ValueError, match=message):
+        il.Multifidelity(**pair).quantile(probability)
+
+
 def test_the_best_number_of_fast_runs_minimises_the_variance_for_a_budget():
     pair = ishigami_pair(1, 0.9)
     models, cost = il.Multifidelity(**pair), 1000.0

@@ -115,8 +115,8 @@ def test_methods_that_need_an_order_refuse_words(problems, text, method, own):
         ),
         (
             {"parameters": {"beam_model": CHOICE | {"values": ["rigid", "solid", "elastic"]}}},
-            "sampling.method",
-            "needs method: grid",
+            "discretisation.element_size",
+            "is required for beam_model: solid",
         ),
         (
             {

@@ -1,0 +1,359 @@
+"""Statistics of a slow model from few of its runs and many of a study's, kept on disk.
+
+The parameters of both are independent draws from the distributions of the study; the runs of the
+slow model are at the first of them. Costs are estimates, not measured times, so that no answer
+depends on the machine.
+"""
+
+import logging
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from math import ceil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from impactlab.analysis.multifidelity import (
+    FEWEST_PAIRS,
+    FidelityEstimate,
+    Multifidelity,
+    best_ratio,
+)
+from impactlab.files import write_netcdf
+from impactlab.methods.runs import usable
+from impactlab.model.checks import integer
+from impactlab.model.cost import A_SECOND
+from impactlab.model.quantities import engineering, time
+from impactlab.provenance import provenance
+from impactlab.study import MULTIFIDELITY
+from impactlab.study.design import design
+from impactlab.study.engine import Engine
+from impactlab.study.execute import execute
+from impactlab.study.ownership import study_file
+from impactlab.study.rare_event import ScoreRuns
+from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
+from impactlab.study.schema.readers import study_of_content
+from impactlab.study.schema.yaml_file import read_mapping
+from impactlab.study.solvers import solver_named
+from impactlab.types import Floats
+from impactlab.validation.fields import plain
+from impactlab.verdicts import Verdict, flagged
+
+log = logging.getLogger(__name__)
+
+_MOST_PAIRS = 10_000
+_MOST_RUNS = 20_000  # of the fast model: of more, the mean of a response hardly gains
+_LITTLE = 1.2  # saving below which the fast model is said to be of little use
+STATISTICS = (
+    *("mean", "standard_deviation", "lower_quartile", "median", "upper_quartile"),
+    "exceedance",
+)
+
+
+class FidelityVerdict(Verdict):
+    """Verdicts on statistics of a slow model by runs of a fast one."""
+
+    USABLE = True, "every run has an answer, and the fast model saves slow runs"
+    LITTLE_SAVING = True, "the models hardly correlate: slow runs alone do as well"
+    MISSING_RUNS = (
+        False,
+        "runs without an answer, and their pairs, are left out: these may be the extreme ones",
+    )
+    NO_STATISTICS = False, "too few pairs have answers, or these do not vary"
+
+
+def multifidelity(
+    study: AnyStudy,
+    folder: Path,
+    engine: Engine,
+    high: Mapping[str, Any],
+    *,
+    pairs: int = 40,
+    runs: int = 0,
+    budget: float = 0.0,
+) -> xr.Dataset:
+    """Return statistics of a study's responses by a slow model; see il.multifidelity.
+
+    folder: of the study's results. runs: of the fast model; 0: the best number. budget: in s of one
+    core, from which the numbers of pairs and runs follow; 0: none. Runs are kept in
+    `folder`/multifidelity and are not solved again.
+
+    Raises as ScoreRuns.of and for a slow model that the study cannot have, and ValueError for
+    settings out of range.
+    """
+    owner = "multifidelity"
+    pairs = integer(owner, "pairs", pairs, FEWEST_PAIRS)
+    runs = integer(owner, "runs", runs, 0)
+    if not (np.isfinite(budget) and budget >= 0.0):
+        raise ValueError(f"{owner}: budget = {budget!r}: must be positive")
+    fast = ScoreRuns.of(study, folder, engine, f"{MULTIFIDELITY}/low")
+    slow_study = _slow_study(study, fast.declared, high)
+    first = design(slow_study, 0, 1).assign_attrs(histories=0, profiles=0)
+    slow = replace(fast, declared=slow_study, first=first, folder=fast.folder.with_name("high"))
+    if not isinstance(study, ImpactStudy) and (budget or not runs):
+        raise ValueError(f"{owner}: runs: must be stated, because what functions cost is not known")
+    pairs = FEWEST_PAIRS if budget else pairs
+    scores = _scores(fast, pairs)
+    costs = [_cost(model, scores) for model in (fast, slow)]
+    least = pairs * costs[1]
+    if budget and budget < least:
+        needed = f"{pairs} runs of the slow model alone need about {time(least)}"
+        raise ValueError(f"{owner}: budget = {time(budget)}: {needed}")
+    if least > 0.0:
+        log.info("%d runs of the slow model: about %s of one core", pairs, time(least))
+    outputs = [_outputs(model, scores) for model in (fast, slow)]
+    ratio = _best_ratio(outputs[0].values, outputs[1].values, costs[1] / costs[0])
+    if budget:
+        most = int(budget / (costs[1] + ratio * costs[0]))
+        pairs = min(max(most, FEWEST_PAIRS), _MOST_PAIRS)
+        outputs[1] = _outputs(slow, _scores(fast, pairs))
+    runs = runs or min(ceil(ratio * pairs), _MOST_RUNS)
+    runs = max(runs, 2 * pairs)
+    outputs[0] = _outputs(fast, _scores(fast, runs))
+    dataset = _dataset(fast, *outputs).assign_attrs(
+        study.attributes() | provenance(),
+        study_file=study_file(study, folder),
+        confidence=study.analysis.confidence,
+        arguments="".join(f" {name}={plain(value)}" for name, value in high.items()),
+        high=", ".join(f"{name} {plain(value)}" for name, value in high.items()),
+    )
+    for name, value, units, meaning in (
+        ("pairs", pairs, "1", "runs of the slow model"),
+        ("runs", pairs + runs, "1", "runs solved, in all"),
+        ("fast_seconds", costs[0], "s", "estimated time of one core of a run of the fast model"),
+        ("slow_seconds", costs[1], "s", "estimated time of one core of a run of the slow model"),
+        ("best_ratio", ratio, "1", "fast runs per slow run that serve the mean best"),
+    ):
+        dataset[name] = (), value, {"units": units, "long_name": meaning}
+    dataset.attrs["answer"] = _answer(dataset)
+    write_netcdf(dataset, folder / f"{MULTIFIDELITY}.nc", "multifidelity")
+    return dataset
+
+
+def _slow_study(study: AnyStudy, declared: AnyStudy, high: Mapping[str, Any]) -> AnyStudy:
+    """Return the study with other values of parameters, read and checked as its file is.
+
+    declared: with its discretisation. Raises StudyError where it cannot have them, ValueError for
+    none, or for a parameter that is drawn.
+    """
+    if not high:
+        raise ValueError(
+            "multifidelity: high: state what the slow model has in place of the study's, such as "
+            "beam_model=solid elements_per_radius=2, or nodes=601"
+        )
+    content = read_mapping(declared.text, str(declared.path))
+    if isinstance(study, ImpactStudy) and study.auto is not None:
+        content["discretisation"] = plain(declared.discretisation)  # type: ignore[union-attr]
+    for name, value in high.items():
+        if name in declared.sampling.varied:
+            raise ValueError(
+                f"multifidelity: high: {name} is drawn, and both models have the same draws: "
+                "take it out"
+            )
+        entry = {"distribution": "fixed", "value": plain(value)}
+        content["sampling"]["parameters"][name] = entry
+    return study_of_content(declared.name, content, Path("the slow model"))
+
+
+def _scores(model: ScoreRuns, runs: int) -> Floats:
+    """Return standard normal scores, (runs, parameter); the first of more are the same."""
+    rng = np.random.default_rng([model.sampling.seed, 39])
+    return rng.standard_normal((runs, len(model.sampling.varied)))
+
+
+def _cost(model: ScoreRuns, scores: Floats) -> float:
+    """Return the mean cost of a run in s of one core, estimated; NaN of a function."""
+    if not isinstance(model.declared, ImpactStudy):
+        return np.nan
+    runs = model.design(scores)
+    solver = solver_named(str(runs.attrs["solver"]))
+    return float(solver.cost(solver.cases(runs, np.arange(len(scores)))).mean() / A_SECOND)
+
+
+def _outputs(model: ScoreRuns, scores: Floats) -> xr.DataArray:
+    """Return the responses on (response, run), NaN where a run has no answer."""
+    solved = usable(execute(model.design(scores), model.folder, model.engine))
+    return solved.transpose("response", "run")
+
+
+def _best_ratio(low: Floats, high: Floats, cost_ratio: float) -> float:
+    """Return fast runs per slow run that serve the mean of every response."""
+    ratios = [2.0]  # as few as a statistic needs
+    for fast, slow in zip(low, high, strict=True):
+        paired = np.isfinite(fast) & np.isfinite(slow)
+        if cost_ratio > 0.0 and paired.sum() > 2 and np.ptp(fast[paired]) and np.ptp(slow[paired]):
+            ratios.append(best_ratio(np.corrcoef(fast[paired], slow[paired])[0, 1], cost_ratio))
+    return min(max(ratios), cost_ratio + 1.0)  # half of all time at most
+
+
+def _models(low: Floats, high: Floats, confidence: float) -> Multifidelity | str:
+    """Return both models, pairs and runs without an answer left out, or why there are none."""
+    pairs, rest = np.isfinite(low[: high.size]) & np.isfinite(high), low[high.size :]
+    low = np.concatenate([low[: high.size][pairs], rest[np.isfinite(rest)]])
+    try:
+        return Multifidelity(low=low, high=high[pairs], confidence=confidence)
+    except ValueError as error:
+        return str(error)
+
+
+def _statistics(
+    models: Multifidelity | str, limit: float | None
+) -> dict[str, FidelityEstimate | str]:
+    """Return the statistics of a response by name, or why there is none; "" without a limit."""
+    if isinstance(models, str):
+        return dict.fromkeys(STATISTICS, models)
+    calls: dict[str, Callable[[], FidelityEstimate]] = {
+        "mean": models.mean,
+        "standard_deviation": lambda: _root(models.variance()),
+        "lower_quartile": lambda: models.quantile(0.25),
+        "median": lambda: models.quantile(0.5),
+        "upper_quartile": lambda: models.quantile(0.75),
+    }
+    if limit is not None:
+        calls["exceedance"] = lambda: models.exceedance(limit)
+    entries: dict[str, FidelityEstimate | str] = dict.fromkeys(STATISTICS, "")  # in this order
+    for name, call in calls.items():
+        try:
+            entries[name] = call()
+        except ValueError as error:
+            entries[name] = str(error)
+    return entries
+
+
+def _root(square: FidelityEstimate) -> FidelityEstimate:
+    """Return a standard deviation from a variance."""
+    value = float(np.sqrt(square.value))
+    errors = square.standard_error / (2 * value), square.plain_error / (2 * value)
+    low, high = (float(np.sqrt(end)) for end in square.interval)
+    return FidelityEstimate(value, errors[0], (low, high), errors[1])
+
+
+def _dataset(model: ScoreRuns, low: xr.DataArray, high: xr.DataArray) -> xr.Dataset:
+    """Return the statistics of each response, in its units, and both models' pairs."""
+    responses, pairs = low["response"].values.tolist(), high.sizes["run"]
+    shape = len(responses), len(STATISTICS)
+    estimate, saving = np.full((*shape, 3), np.nan), np.full(shape, np.nan)
+    reasons = np.full(shape, "", dtype=object)
+    correlation, missing = np.full(shape[0], np.nan), np.zeros(shape[0], int)
+    verdicts, limits = np.zeros(shape[0], int), np.full(shape[0], np.nan)
+    for row, name in enumerate(responses):
+        fast, slow = low.values[row], high.values[row]
+        models = _models(fast, slow, model.declared.analysis.confidence)
+        limit = model.declared.limits.get(name)
+        for column, entry in enumerate(_statistics(models, limit).values()):
+            if isinstance(entry, str):
+                reasons[row, column] = entry
+            else:
+                estimate[row, column] = entry.value, *entry.interval
+                saving[row, column] = entry.saving
+        paired = np.isfinite(fast[:pairs]) & np.isfinite(slow)
+        missing[row] = pairs - paired.sum() + np.isnan(fast[pairs:]).sum()
+        limits[row] = np.nan if limit is None else limit
+        if isinstance(models, Multifidelity):
+            correlation[row] = models.correlation
+        verdicts[row] = _verdict(models, saving[row, 0], int(missing[row]))
+    pair = {"units": "1", "long_name": "in units of the response"}
+    data = {
+        "estimate": (("response", "statistic", "bound"), estimate, pair),
+        "saving": (
+            ("response", "statistic"),
+            saving,
+            {"units": "1", "long_name": "slow runs alone per slow run, for the same error"},
+        ),
+        "refusal": (
+            ("response", "statistic"),
+            reasons.astype(str),
+            {"long_name": "why there is no estimate"},
+        ),
+        "correlation": ("response", correlation, {"units": "1", "long_name": "correlation"}),
+        "missing": ("response", missing, {"units": "1", "long_name": "runs without an answer"}),
+        "limit": ("response", limits, pair),
+        "fast": (("response", "pair"), low.values[:, :pairs], pair),
+        "slow": (("response", "pair"), high.values, pair),
+    }
+    codes = xr.DataArray(verdicts, dims="response")
+    ends = {"long_name": "estimate, and ends of its interval"}
+    coords = {
+        "response": low["response"],
+        "response_units": low["response_units"],
+        "response_long_name": low["response_long_name"],
+        "statistic": list(STATISTICS),
+        "bound": ("bound", ["estimate", "low", "high"], ends),
+    }
+    return xr.Dataset(data, coords).assign(
+        response_verdict=flagged(codes, FidelityVerdict, "verdict on the statistics"),
+        verdict=flagged(codes.max(), FidelityVerdict, "worst verdict on the statistics"),
+    )
+
+
+def _verdict(models: Multifidelity | str, saving: float, missing: int) -> FidelityVerdict:
+    if isinstance(models, str):
+        return FidelityVerdict.NO_STATISTICS
+    if missing:
+        return FidelityVerdict.MISSING_RUNS
+    return FidelityVerdict.USABLE if saving >= _LITTLE else FidelityVerdict.LITTLE_SAVING
+
+
+def _answer(result: xr.Dataset) -> str:
+    """Return the findings in sentences: first the mean of the response with a limit."""
+    limited = np.flatnonzero(np.isfinite(result["limit"].values))
+    leading = int(limited[0]) if limited.size else 0
+    pairs, runs = int(result["pairs"]), int(result["runs"])
+    name = str(result["response"].values[leading]).replace("_", " ")
+    mean = stated(result, leading, "mean")
+    lines = [
+        f"With {result.attrs['high']}, the {name} is {mean} in the mean "
+        f"({100 * result.attrs['confidence']:g} % interval), from {pairs:,} of these runs and "
+        f"{runs - pairs:,} of the study's."
+    ]
+    if not mean:
+        reason = result["refusal"].values[leading, 0]
+        lines = [f"No statistics of the {name} with {result.attrs['high']}: {reason}."]
+    for row, response in enumerate(result["response"].values):
+        parts = [f"mean {mean}"] if (mean := stated(result, row, "mean")) else []
+        if middle := stated(result, row, "median"):
+            parts.append(f"median {middle}")
+        if spread := stated(result, row, "standard_deviation"):
+            parts.append(f"standard deviation {spread}")
+        if chance := stated(result, row, "exceedance"):
+            units = str(result["response_units"].values[row])
+            parts.append(f"above {engineering(float(result['limit'][row]), units)} with {chance}")
+        parts.append(f"correlation {float(result['correlation'][row]):.3f}")
+        if parts[1:]:
+            lines.append(f"{str(response).replace('_', ' ').capitalize()}: {'; '.join(parts)}.")
+    slow, fast = float(result["slow_seconds"]), float(result["fast_seconds"])
+    saving = float(result["saving"].values[leading, 0])
+    if mean:
+        alone, spent = ceil(saving * pairs), pairs * slow + (runs - pairs) * fast
+        times = f", about {time(alone * slow)} of one core; both models took {time(spent)}"
+        lines.append(
+            f"Saving: a mean as accurate takes {alone:,} of the slow runs alone"
+            f"{times if slow > 0.0 else ''}."
+        )
+    if slow > 0.0:
+        lines.append(
+            f"Allocation: a slow run costs as much as {slow / fast:,.0f} fast ones, and "
+            f"{float(result['best_ratio']):,.0f} fast runs per slow one serve the mean best."
+        )
+    worst = list(FidelityVerdict)[int(result["verdict"])]
+    if worst is not FidelityVerdict.USABLE:
+        count = int(result["missing"].max())
+        most = f" (up to {count} a response)" if worst is FidelityVerdict.MISSING_RUNS else ""
+        lines.append(f"Caution: {worst.meaning}{most}.")
+    return "\n".join(lines)
+
+
+def stated(result: xr.Dataset, row: int, statistic: str) -> str:
+    """Return a statistic of a response with unit and interval; "" where there is none."""
+    values = result["estimate"].sel(statistic=statistic).values[row].tolist()
+    if np.isnan(values[0]):
+        return ""
+    if statistic == "exceedance":
+        value, low, high = (f"{number:.2g}" for number in values)
+        return f"probability {value} ({low} to {high})"
+    units = str(result["response_units"].values[row])
+    value, low, high = (engineering(number, units) for number in values)
+    number, _, unit = low.partition(" ")
+    return f"{value} ({number if high.endswith(f' {unit}') else low} to {high})"

@@ -1,0 +1,178 @@
+"""Statistics of a study's slow model: stored runs, workers, missing runs, budgets, refusals."""
+
+from html import unescape
+
+import numpy as np
+import pytest
+from scipy.special import ndtr
+
+import impactlab as il
+from impactlab.fem3d.solver import solve
+from impactlab.model.quantities import si
+
+
+def power_of(x, noise, power):
+    return (1 + x) ** power + 0.1 * noise
+
+
+def sometimes_failing(x, noise, power):
+    return np.nan if power == 2 and x > 0.9 else power_of(x, noise, power)
+
+
+FINE = {"nodes": 101, "scheme": "leapfrog"}
+
+
+def study(folder, function=power_of, **changes):
+    parameters = {"x": il.Uniform(0, 1), "noise": il.Normal(0, 1), "power": 1.7}
+    arguments = {"function": function, "limits": {"value": 3}}
+    arguments |= {"sampling": il.Pawn(samples=128, seed=2, parameters=parameters)} | changes
+    return il.Study(title="Power", results=folder, **arguments)
+
+
+def impacts(folder, **changes):
+    arguments = {
+        "impact": il.paper_impact("2 m/s"),
+        "duration": "0.8 ms",
+        "discretisation": il.Discretisation(nodes=13, scheme="modal"),
+        "responses": ["peak_force", "maximum_indentation"],
+        "limits": {"peak_force": "26 kN"},
+        "sampling": il.Pawn(
+            samples=128,
+            parameters={
+                "velocity": il.Uniform("1.5 m/s", "2.5 m/s"),
+                "beam_depth": il.Uniform("26 mm", "29 mm"),
+            },
+        ),
+    }
+    return il.Study(title="Impacts", results=folder, **(arguments | changes))
+
+
+def test_runs_are_kept_and_give_the_same_bits_for_any_number_of_workers(tmp_path):
+    results = [
+        il.multifidelity(study(tmp_path / name), {"power": 2}, runs=1000, workers=workers)
+        for name, workers in (("one", 1), ("one", 1), ("two", 2))
+    ]
+    for other in results[1:]:
+        np.testing.assert_array_equal(results[0].estimate, other.estimate)
+        np.testing.assert_array_equal(results[0].slow, other.slow)
+    exact = {"mean": 7 / 3, "standard_deviation": np.sqrt(6.2 - (7 / 3) ** 2 + 0.01)}
+    for name, value in exact.items():
+        low, high = results[0].estimate.sel(statistic=name).values[0, 1:]
+        assert low < value < high, name
+    page = (tmp_path / "one" / "power" / "multifidelity.html").read_text("utf-8")
+    headline = results[0].answer.splitlines()[0].removesuffix(".")
+    assert headline in unescape(page).replace("\xa0", " ")
+    assert page.count("<figure") == 1
+
+
+@pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+def test_statistics_are_those_of_the_slow_model_of_impacts(tmp_path):
+    """Held against plain runs of the slow model at other draws."""
+    result = il.multifidelity(impacts(tmp_path), FINE, workers=1)
+    rng = np.random.default_rng(5)
+    varied = {
+        "velocity": rng.uniform(1.5, 2.5, 1000),
+        "beam_depth": rng.uniform(26e-3, 29e-3, 1000),
+    }
+    plain = il.simulate_many(
+        il.paper_impact(), il.Discretisation(**FINE), duration="0.8 ms", varied=varied
+    )
+    for name in ("peak_force", "maximum_indentation"):
+        values, row = plain[name].values, result.sel(response=name)
+        for statistic, value in (("mean", values.mean()), ("standard_deviation", values.std())):
+            _, low, high = row.estimate.sel(statistic=statistic).values
+            assert low - 0.05 * values.std() < value < high + 0.05 * values.std()
+    beyond = np.mean(plain["peak_force"].values > 26e3)
+    _, low, high = result.estimate.sel(response="peak_force", statistic="exceedance").values
+    assert low - 0.03 < beyond < high + 0.03
+    assert result.slow_seconds > 2 * result.fast_seconds
+    assert result.saving.sel(statistic="mean").min() > 3
+    assert "one core" in result.answer
+
+
+def test_a_budget_sets_the_numbers_of_both_models(tmp_path):
+    for budget in ("50 ms", "0.1 s"):
+        result = il.multifidelity(impacts(tmp_path), FINE, budget=budget, workers=1)
+        pairs, runs = int(result.pairs), int(result.runs)
+        cost = pairs * result.slow_seconds + (runs - pairs) * result.fast_seconds
+        assert cost.item() == pytest.approx(si(budget, "s"), rel=0.05)
+        assert (runs - pairs) / pairs == pytest.approx(result.best_ratio.item(), rel=0.02)
+    with pytest.raises(
+        ValueError, match="budget = 1 ms: 20 runs of the slow model alone need about"
+    ):
+        il.multifidelity(impacts(tmp_path), FINE, budget="1 ms", workers=1)
+
+
+def test_pairs_without_an_answer_are_left_out_and_counted(tmp_path):
+    result = il.multifidelity(study(tmp_path, sometimes_failing), {"power": 2}, runs=500, workers=1)
+    missing = int(result.slow.isnull().sum())
+    assert result.missing.item() == missing > 0
+    assert f"are left out: these may be the extreme ones (up to {missing} a response)" in (
+        result.answer
+    )
+    assert "missing_runs" in result.verdict.attrs["flag_meanings"].split()[int(result.verdict)]
+
+
+def test_a_statistic_that_is_not_sound_is_refused_with_its_reason(tmp_path):
+    """The fast model hardly correlates, and no run exceeds the limit."""
+
+    def unlike(x, noise, power):
+        return x if power == 2 else 0.5 * x + noise
+
+    result = il.multifidelity(study(tmp_path, unlike), {"power": 2}, runs=500, workers=1)
+    row = result.sel(response="value")
+    assert np.isfinite(row.estimate.sel(statistic="mean")).all()
+    assert "correlate by" in row.refusal.sel(statistic="standard_deviation").item()
+    assert "0 of 40 runs of high exceed it" in row.refusal.sel(statistic="exceedance").item()
+    assert "Caution: the models hardly correlate" in result.answer
+
+
+def test_three_dimensional_runs_are_those_at_the_first_draws(tmp_path):
+    parameters = {"velocity": il.Uniform("1 m/s", "2 m/s")}
+    short = impacts(
+        tmp_path,
+        duration="0.02 ms",
+        responses=["energy_error"],
+        limits=None,
+        sampling=il.Pawn(samples=128, parameters=parameters),
+    )
+    high = {"beam_model": "solid", "element_size": "4 mm"}
+    result = il.multifidelity(short, high, pairs=20, runs=40, workers=2)
+    draw = ndtr(np.random.default_rng([1, 39]).standard_normal())
+    alone = solve(il.paper_impact(1 + draw), element_size=4e-3, duration=2e-5)
+    assert result.slow.values[0, 0] == pytest.approx(alone.energy_error.item(), rel=1e-9)
+    assert result.slow.notnull().all()
+    assert result.slow_seconds.item() > result.fast_seconds.item()
+
+
+@pytest.mark.parametrize(
+    ("changes", "high", "settings", "reason"),
+    [
+        ({}, {}, {}, "state what the slow model has in place"),
+        ({}, {"x": 1}, {}, "x is drawn, and both models have the same draws"),
+        ({}, {"power": 2}, {"runs": 0}, "runs: must be stated, because what functions cost"),
+        ({}, {"power": 2}, {"pairs": 5}, "pairs = 5: must be a whole number of at least 20"),
+        ({}, {"power": 2}, {"budget": -1.0}, "budget = -1.0: must be positive"),
+        (
+            {
+                "sampling": il.Grid(parameters={"x": [1, 2], "noise": [3], "power": [1]}),
+                "limits": None,
+            },
+            {"power": 2},
+            {},
+            "use any method but grid",
+        ),
+    ],
+)
+def test_what_cannot_be_estimated_is_refused(tmp_path, changes, high, settings, reason):
+    with pytest.raises(ValueError, match=reason):
+        il.multifidelity(study(tmp_path, **changes), high, **({"runs": 500} | settings), workers=1)
+
+
+def test_values_that_a_study_cannot_have_are_refused_at_their_key(tmp_path):
+    for high, reason in (
+        ({"node": 41}, "the slow model: sampling.parameters.node"),
+        ({"beam_model": "solid"}, "discretisation.element_size: is required"),
+    ):
+        with pytest.raises(il.StudyError, match=reason):
+            il.multifidelity(impacts(tmp_path), high, workers=1)
