@@ -80,7 +80,8 @@ class ScoreRuns:
             return scores
         linear = correlation_matrix(list(self.sampling.varied), self.correlations)
         # einsum, not a product of matrices: the same bits for any number of threads
-        return np.einsum("nj,ij->ni", scores, np.linalg.cholesky(linear))
+        mixed: Floats = np.einsum("nj,ij->ni", scores, np.linalg.cholesky(linear))
+        return mixed
 
     @property
     def correlations(self) -> Correlations:

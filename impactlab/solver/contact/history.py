@@ -111,8 +111,9 @@ def make_pair(case: Record) -> Pair:
     prestress = depth, case.stress_along, case.stress_across
     metals = shape(E / S_y, share, nu, hardening, kinematic, hardness)
     hardest = case.sphere_yield_stress
-    of_contact = prestress, metals, crowding, rate, hardest
-    return Pair(case.contact, E, R, S_y, nu, *compliances, *of_contact)
+    return Pair(
+        case.contact, E, R, S_y, nu, *compliances, prestress, metals, crowding, rate, hardest
+    )
 
 
 @compiled
