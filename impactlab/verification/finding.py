@@ -203,9 +203,9 @@ Kind = Literal[
 class Reference:
     """The independent values of a check, and their uncertainty in the measure of a comparison.
 
-    uncertainty: of all but absolute comparisons, whose values (zeros, orders, numbers of contacts)
-    are exact; NaN where it is not known. basis: what it is, and how it is known. parts: others, by
-    regular expressions of which the first that occurs in "quantity, case" counts.
+    uncertainty: relative; NaN where it is not known. Whole numbers in absolute comparisons (zeros,
+    orders, numbers of contacts) are exact. basis: what it is, and how it is known. parts: others,
+    by regular expressions of which the first that occurs in "quantity, case" counts.
     """
 
     kind: Kind = ""
@@ -215,9 +215,11 @@ class Reference:
 
     def applied(self, entry: Comparison) -> Comparison:
         """Return a comparison with the uncertainty of its independent value."""
-        text, exact = f"{entry.quantity}, {entry.where}", entry.measure == "absolute"
+        text, value = f"{entry.quantity}, {entry.where}", entry.independent
         matches = (size for part, size in self.parts.items() if re.search(part, text))
-        size = next(matches, 0.0 if exact and self.kind else self.uncertainty)
+        size = next(matches, self.uncertainty)
+        if entry.measure == "absolute" and self.kind:
+            size = 0.0 if float(value).is_integer() else size * abs(value)
         return replace(entry, uncertainty=size)
 
 

@@ -28,7 +28,7 @@ def test_a_project_brings_workflow_and_studies(tmp_path):
     schema = json.loads(
         (studies / modeline.removeprefix("# yaml-language-server: $schema=")).read_text()
     )
-    assert schema["else"]["else"]["properties"]["impact"]["properties"]["velocity"]
+    assert schema["else"]["else"]["else"]["properties"]["impact"]["properties"]["velocity"]
     assert "snakemake --cores all" in (tmp_path / "mine" / "README.md").read_text()
     assert_pages_are_there(tmp_path / "mine")
     again = called("new", "mine", cwd=tmp_path)

@@ -81,7 +81,7 @@ def test_rows_tell_both_values_the_difference_and_the_tolerance(told, findings):
     ]
     assert "Uncertainty of the independent values (closed form): rounding." in told(findings).text
     assert rows[0][2:] == ["21.0648 kN", "21.0647 kN", "10⁻¹² %", "0.00032 %", "0.01 %", "passed"]
-    assert rows[1][2:] == ["1.2003 mm", "1.2 mm", "exact", "0.3 µm", "2 µm", "passed"]
+    assert rows[1][2:] == ["1.2003 mm", "1.2 mm", "1.2×10⁻¹¹ µm", "0.3 µm", "2 µm", "passed"]
     assert rows[2][2:] == [
         "0.03 1/m",
         "0.031 1/m",

@@ -16,6 +16,7 @@ from impactlab.verification.finding import (
     CurvePanel,
     Finding,
     Outcome,
+    Reference,
     gravest_first,
     spelled,
     worst,
@@ -139,3 +140,16 @@ def test_names_of_study_files_are_spelled_as_in_papers(name, text):
     assert Curve(name, np.zeros(1), np.zeros(1)).label == text
     assert CurvePanel(name, ("time", "s"), ("force", "N"), []).title == text
     assert spelled(text) == text, "a stored finding stays as it is"
+
+
+def test_a_reference_gives_its_uncertainty_in_the_measure_of_each_comparison():
+    reference = Reference("series", 1e-3, "made up", {"peak.*fast": 2e-3})
+    entries = Comparisons("slow").relative("peak force", "N", 1.0, 1.0, 0.1)
+    entries.at("fast").relative("peak force", "N", 1.0, 1.0, 0.1)
+    entries.absolute("restitution", "1", 0.5, 0.5, 0.1).absolute("contacts", "1", 2.0, 2.0, 0.1)
+    sizes = [reference.applied(entry).uncertainty for entry in entries]
+    assert sizes == [1e-3, 2e-3, 0.5e-3, 0.0]
+    assert all(np.isnan(Reference().applied(entry).uncertainty) for entry in entries)
+    outcome = Check("made_up", "", "", lambda: Finding(entries), reference).run()
+    assert [entry.uncertainty for entry in outcome.finding.comparisons] == sizes
+    assert (outcome.reference, outcome.basis) == ("series", "made up")

@@ -39,7 +39,7 @@ def test_comparisons_are_a_labelled_table(outcomes, tmp_path):
     )
     assert (row.units.item(), row.measure.item(), row.passed.item()) == ("m", "absolute", True)
     assert row.ours.item() == 1.2003e-3
-    assert stored["uncertainty"].values[:2].tolist() == [1e-14, 0.0]
+    assert stored["uncertainty"].values[:2].tolist() == [1e-14, 1.2e-17]
     assert stored["reference"].sel(name="good").item() == "closed form"
     assert int((~stored.passed).sum()) == 3
     assert stored.verdict.sel(name="broken").item() == "error"
