@@ -312,13 +312,31 @@ def _spreads(model: BeamModel) -> Any:
     return spread_forces
 
 
+def _settles(model: BeamModel) -> Any:
+    """Return a function that puts the beam to rest with the nodes of further spheres."""
+    plain_settle, push, flies = model.settle, model.push, model.flight is not None
+    if plain_settle is None or push is None:
+        return None
+
+    @compiled
+    def settle(state: State) -> None:
+        plain_settle(_beam(state))
+        if flies:  # of modes, the nodes follow
+            for k in range(state.extra.motions.size):
+                state.extra.forces[k] = 0.0
+            for now in range(2):
+                push(_beam(state), now, state.extra.nodes, state.extra.forces)
+
+    return settle
+
+
 def with_spheres(model: BeamModel) -> BeamModel:
     """Return a model of the beam that moves further spheres, too."""
     move_beam, plain_curvature = model.step, model.curvature
     plain_deflect, plain_spread = model.deflect, model.spread
     plain_take: Any = model.take
     push: Any = model.push
-    press, spread_forces, plain_settle = _presses(model), _spreads(model), model.settle
+    press, spread_forces = _presses(model), _spreads(model)
 
     @inlined
     def step(state: State, now: int, F: float) -> None:
@@ -344,11 +362,6 @@ def with_spheres(model: BeamModel) -> BeamModel:
         return plain_spread(_beam(state), now, F, a)
 
     @compiled
-    def settle(state: State) -> None:
-        if plain_settle is not None:
-            plain_settle(_beam(state))
-
-    @compiled
     def take(extra: Any, table: Table) -> None:
         plain_take(extra, table.modes)
 
@@ -358,7 +371,7 @@ def with_spheres(model: BeamModel) -> BeamModel:
         energy=_energies(model),
         deflect=deflect,
         spread=spread,
-        settle=settle,
+        settle=_settles(model),
         flight=_leaps(model),
         take=None if plain_take is None else take,
         push=None,
