@@ -18,7 +18,7 @@ from pathlib import Path
 from faults import FAULTS, Fault
 
 ROOT = Path(__file__).resolve().parents[2]
-SUITES = ("tests/unit/solver", "tests/verification")
+SUITES = ("tests/unit/model", "tests/unit/solver", "tests/verification")
 PATIENCE = 1800
 """Seconds for one fault; a run that never ends counts as caught."""
 CHECKS = """
