@@ -85,7 +85,7 @@ class LimitRuns:
             return scores
         linear = correlation_matrix(list(self.sampling.varied), self.correlations)
         # einsum, not a product of matrices: the same bits for any number of threads
-        return np.einsum("nj,ij->ni", scores, np.linalg.cholesky(linear))
+        return np.asarray(np.einsum("nj,ij->ni", scores, np.linalg.cholesky(linear)))
 
     @property
     def correlations(self) -> Correlations:
