@@ -80,8 +80,7 @@ class ScoreRuns:
             return scores
         linear = correlation_matrix(list(self.sampling.varied), self.correlations)
         # einsum, not a product of matrices: the same bits for any number of threads
-        mixed: Floats = np.einsum("nj,ij->ni", scores, np.linalg.cholesky(linear))
-        return mixed
+        return np.asarray(np.einsum("nj,ij->ni", scores, np.linalg.cholesky(linear)))
 
     @property
     def correlations(self) -> Correlations:
