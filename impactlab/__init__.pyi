@@ -7,10 +7,10 @@ from .api.definition import Study as Study
 from .api.experiment import calibrate as calibrate
 from .api.experiment import compare as compare
 from .api.experiment import compare_studies as compare_studies
-from .api.experiment import multifidelity as multifidelity
-from .api.experiment import rare_event as rare_event
-from .api.experiment import size as size
 from .api.laws import register as register
+from .api.questions import multifidelity as multifidelity
+from .api.questions import rare_event as rare_event
+from .api.questions import size as size
 from .fem3d.witness import witness as witness
 from .methods.delta import Delta as Delta
 from .methods.distributions import Choice as Choice

@@ -37,7 +37,7 @@ def rare(
     """
     stop_solving()
     from impactlab.report.console import print_estimate
-    from impactlab.report.rare_event import report_rare_event
+    from impactlab.report.questions import report_rare_event
     from impactlab.study import steps
     from impactlab.study.engine import Engine
     from impactlab.study.rare_event import cost, rare_event
@@ -81,7 +81,7 @@ def size(
     """
     stop_solving()
     from impactlab.report.console import print_estimate
-    from impactlab.report.rare_event import report_sizing
+    from impactlab.report.questions import report_sizing
     from impactlab.study import steps
     from impactlab.study.engine import Engine
     from impactlab.study.rare_event import cost
@@ -126,7 +126,7 @@ def multifidelity(
     there, and are not solved again.
     """
     stop_solving()
-    from impactlab.report.rare_event import report_multifidelity
+    from impactlab.report.questions import report_multifidelity
     from impactlab.study import steps
     from impactlab.study.engine import Engine
     from impactlab.study.multifidelity import multifidelity as statistics

@@ -24,7 +24,7 @@ from impactlab.report.convergence import convergence
 from impactlab.report.distribution import regime_entries
 from impactlab.report.explorer import write_explorer
 from impactlab.report.page import Cell, Row, Section, Table, described, motion, pictures, write_page
-from impactlab.report.rare_event import answers_beside
+from impactlab.report.questions import answers_beside
 from impactlab.variables import of_table
 
 _GRID_VALUES = 12  # a longer list of values of a grid is replaced by its range
