@@ -1,6 +1,7 @@
 """Questions to a study that need runs of their own: rare events, designs, two models."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import xarray as xr
 
