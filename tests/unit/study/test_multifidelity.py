@@ -55,6 +55,8 @@ def test_runs_are_kept_and_give_the_same_bits_for_any_number_of_workers(tmp_path
     for other in results[1:]:
         np.testing.assert_array_equal(results[0].estimate, other.estimate)
         np.testing.assert_array_equal(results[0].slow, other.slow)
+    more = il.multifidelity(study(tmp_path / "two"), {"power": 2}, runs=1500, workers=1)
+    np.testing.assert_array_equal(more.fast, results[0].fast)  # the first draws are the same
     exact = {"mean": 7 / 3, "standard_deviation": np.sqrt(6.2 - (7 / 3) ** 2 + 0.01)}
     for name, value in exact.items():
         low, high = results[0].estimate.sel(statistic=name).values[0, 1:]
