@@ -81,13 +81,15 @@ def report_multifidelity(result: xr.Dataset, folder: Path) -> Path:
             if text or reason:
                 cell = Cell(text, "number") if text else Cell("none", "warning", reason)
                 saving = _cell(float(result["saving"].values[row, column]))
-                names = labels.response(str(response)), labels.sentence(str(statistic))
+                kind = str(statistic).replace("_", " ").replace("exceedance", "above the limit")
+                names = labels.title(str(response)), labels.sentence(kind)
                 rows.append([*names, cell, saving])
-    head = ["Response", "Statistic", "Estimate and interval", "Slow runs saved per slow run"]
-    numbers: list[Row] = [
-        [labels.sentence(str(result[name].attrs["long_name"])), _cell(result[name].item())]
-        for name in ("pairs", "runs", "slow_seconds", "fast_seconds", "best_ratio")
-    ]
+    head = ["Response", "Statistic", "Estimate and interval", "Slow runs alone per slow run"]
+    numbers: list[Row] = []
+    for name in ("pairs", "runs", "slow_seconds", "fast_seconds", "best_ratio"):
+        units = result[name].attrs["units"].replace("1", "")
+        meaning = labels.axis(labels.sentence(str(result[name].attrs["long_name"])), units)
+        numbers.append([meaning, _cell(result[name].item())])
     tables = [
         Table("Statistics of the slow model", head, rows),
         Table("Runs and costs", ["Number", "Value"], numbers),

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import ceil
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 import numpy as np
@@ -116,7 +117,8 @@ def multifidelity(
         study.attributes() | provenance(),
         study_file=study_file(study, folder),
         confidence=study.analysis.confidence,
-        arguments="".join(f" {name}={plain(value)}" for name, value in high.items()),
+        arguments="".join(f" {quote(f'{name}={plain(value)}')}" for name, value in high.items())
+        + f" --pairs {pairs} --runs {runs}",
         high=", ".join(f"{name} {plain(value)}" for name, value in high.items()),
     )
     for name, value, units, meaning in (
