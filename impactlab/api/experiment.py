@@ -346,9 +346,8 @@ def multifidelity(
 ) -> xr.Dataset:
     """Estimate statistics of a slow model from few of its runs and many of the study's model.
 
-    Both have the distributions of the study (docs/sensitivity.md); see `Multifidelity` for outputs
-    of models of one's own. The runs are kept in the study's folder: the same call resumes where it
-    stopped.
+    Both have the distributions of the study (docs/sensitivity.md); `Multifidelity` takes outputs
+    instead. The runs are kept in the study's folder: the same call resumes where it stopped.
 
     Parameters
     ----------
@@ -360,8 +359,7 @@ def multifidelity(
     pairs : int, default 40
         Number of runs of the slow model, at least 20.
     runs : int, default 0
-        Number of runs of the study's model; 0: the best for the costs and correlations of the
-        pairs.
+        Number of runs of the study's model; 0: the best for the costs and the pairs.
     budget : Quantity, default 0
         Time of one core, in s, in place of `pairs`: 20 pairs tell how many it pays for.
     workers : int, optional
@@ -377,7 +375,7 @@ def multifidelity(
     Raises
     ------
     StudyError
-        If the study has no sample or correlations, or cannot have these values.
+        If the study has no sample, or cannot have these values.
     ValueError
         If a setting is out of range, or another study has results of this name.
 
