@@ -1,4 +1,4 @@
-"""Statistics of a slow model from few of its runs and many of a study's, kept on disk.
+"""Statistics of a slow model: few runs of it and many of the study's model, kept on disk.
 
 The parameters of both are independent draws from the distributions of the study; the runs of the
 slow model are at the first of them. Costs are estimates, not measured times, so that no answer

@@ -201,7 +201,7 @@ Kind = Literal[
 
 @dataclass(frozen=True)
 class Reference:
-    """The independent values of a check, and their uncertainty in the measure of a comparison.
+    """Independent values of a check, and their uncertainty as its comparisons measure it.
 
     uncertainty: relative; NaN where it is not known. Whole numbers in absolute comparisons (zeros,
     orders, numbers of contacts) are exact. basis: what it is, and how it is known. parts: others,

@@ -4,8 +4,8 @@ python tests/benchmarks/narrow_beams.py
 
 CROWDING of model/contact_compliance.py, its exponent and the share of it in unloading were fitted
 to the beams of narrow_beams.csv, peak and indentation alike; its lines are the means of 3-D runs
-on several meshes. Where the file lacks a beam it is solved, half an hour on a core for all. No case
-of docs/agreement_metals.csv is among them but the beam of 20 by 20 mm at 5 m/s.
+on several meshes. A beam that the file lacks is solved; all of them take one core half an hour. Of
+the cases of docs/agreement_metals.csv, the beam of 20 by 20 mm at 5 m/s alone is among them.
 """
 
 from __future__ import annotations

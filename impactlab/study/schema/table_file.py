@@ -259,7 +259,7 @@ def _input(study: TableStudy, name: str, cells: Cells) -> NDArray[Any]:
 def _numbers(
     path: Path, name: str, column: Column, cells: Cells, *, gaps: bool = False
 ) -> NDArray[np.float64]:
-    """Return the numbers of a column in SI units, exact in decimals; NaN where a cell is empty."""
+    """Return a column's numbers in SI units, exact in decimals; NaN where a cell is empty."""
     values = np.full(len(cells), np.nan)
     unit = "" if column.units == "1" else f" {column.units}"
     for place, (line, cell) in enumerate(cells):
