@@ -201,7 +201,7 @@ Kind = Literal[
 
 @dataclass(frozen=True)
 class Reference:
-    """Independent values of a check, and their uncertainty as its comparisons measure it.
+    """Independent values of a check, and their uncertainty.
 
     uncertainty: relative; NaN where it is not known. Whole numbers in absolute comparisons (zeros,
     orders, numbers of contacts) are exact. basis: what it is, and how it is known. parts: others,
