@@ -57,7 +57,8 @@ def work_halves(
 class Damping:
     """Record of what a step takes from the beam.
 
-    work: in J, until the velocity that a step begins with. drag: g in N, (n, 3). inverse_mass: 1/(m (1 + h)) in 1/kg, (n, 3), of the present step.
+    work: in J, until the velocity that a step begins with. drag: g in N, (n, 3). inverse_mass:
+    1/(m (1 + h)) in 1/kg, (n, 3), of the present step.
     """
 
     def __init__(self, mesh: Mesh, beam: Beam, mass: Floats, inverse_mass: Floats) -> None:
