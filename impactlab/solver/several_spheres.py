@@ -330,6 +330,19 @@ def _settles(model: BeamModel) -> Any:
     return settle
 
 
+def _rests_twice(model: BeamModel) -> Any:
+    """Return a function that tells whether the beam can rest in a second shape, None of most."""
+    plain_rests_twice = model.rests_twice
+    if plain_rests_twice is None:
+        return None
+
+    @compiled
+    def rests_twice(state: State) -> bool:
+        return bool(plain_rests_twice(_beam(state)))
+
+    return rests_twice
+
+
 def with_spheres(model: BeamModel) -> BeamModel:
     """Return a model of the beam that moves further spheres, too."""
     move_beam, plain_curvature = model.step, model.curvature
@@ -372,6 +385,7 @@ def with_spheres(model: BeamModel) -> BeamModel:
         deflect=deflect,
         spread=spread,
         settle=_settles(model),
+        rests_twice=_rests_twice(model),
         flight=_leaps(model),
         take=None if plain_take is None else take,
         push=None,
