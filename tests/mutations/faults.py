@@ -27,6 +27,12 @@ FAULTS = (
         "over = approach + contact.delta_r\n    if over <= 0.0:\n        return 0.0\n    if",
     ),
     Fault(
+        "contact: a narrow beam without sides",
+        "contact/finite_element.py",
+        "if crowding > 0.0:",
+        "if crowding < 0.0:",
+    ),
+    Fault(
         "contact: stress of bending as tension",
         "contact/prestress.py",
         "along * contact.F_m - left",
