@@ -244,7 +244,7 @@ class Multifidelity:
         if expected < EXPECTED_EVENTS:
             raise ValueError(
                 f"Multifidelity.exceedance: limit = {limit:g}: {expected:.1f} of {self.high.size} "
-                f"runs of high are expected on one side: at least {EXPECTED_EVENTS}: add runs"
+                f"runs of high are expected on one side, {EXPECTED_EVENTS} are needed: add runs"
             )
         return estimate
 
@@ -275,7 +275,7 @@ class Multifidelity:
         if (expected := min(probability, 1.0 - probability) * self.high.size) < QUANTILE_EVENTS:
             raise ValueError(
                 f"{owner}: {expected:.3g} of {self.high.size} runs of high are expected on one "
-                f"side: at least {QUANTILE_EVENTS}: add runs"
+                f"side, {QUANTILE_EVENTS} are needed: add runs"
             )
         line, every, errors = _line(self.low[: self.high.size], self.high, self.low)
         outputs, margin = np.concatenate([every, self.high]), 3.0 * _spread(errors)

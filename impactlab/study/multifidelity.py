@@ -6,6 +6,7 @@ depends on the machine.
 """
 
 import logging
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import ceil
@@ -197,7 +198,7 @@ def _models(low: Floats, high: Floats, confidence: float) -> Multifidelity | str
     try:
         return Multifidelity(low=low, high=high[pairs], confidence=confidence)
     except ValueError as error:
-        return str(error)
+        return _reason(error)
 
 
 def _statistics(
@@ -220,8 +221,14 @@ def _statistics(
         try:
             entries[name] = call()
         except ValueError as error:
-            entries[name] = str(error)
+            entries[name] = _reason(error)
     return entries
+
+
+def _reason(error: ValueError) -> str:
+    """Return why there is no estimate, in the words of a study."""
+    text = re.sub(r"^Multifidelity[.\w]*: (\w+ = \S+: )?", "", str(error))
+    return text.replace("runs of high", "slow runs")
 
 
 def _root(square: FidelityEstimate) -> FidelityEstimate:

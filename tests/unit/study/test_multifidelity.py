@@ -125,7 +125,7 @@ def test_a_statistic_that_is_not_sound_is_refused_with_its_reason(tmp_path):
     row = result.sel(response="value")
     assert np.isfinite(row.estimate.sel(statistic="mean")).all()
     assert "correlate by" in row.refusal.sel(statistic="standard_deviation").item()
-    assert "0 of 40 runs of high exceed it" in row.refusal.sel(statistic="exceedance").item()
+    assert "0 of 40 slow runs exceed it" in row.refusal.sel(statistic="exceedance").item()
     assert "Caution: the models hardly correlate" in result.answer
 
 
