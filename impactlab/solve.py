@@ -36,7 +36,7 @@ from impactlab.solver.outputs import DIVERGED, SERIES, blank, by_strike
 from impactlab.solver.section import FibreSection, make_section
 from impactlab.solver.sphere_table import Table, make_table
 from impactlab.solver.types import VON_KARMAN
-from impactlab.variables import BY_SPHERE, FAILURES, HISTORIES, RESPONSES
+from impactlab.variables import BY_SPHERE, FAILURES, HISTORIES, RESPONSES, STILL_GROWING
 
 _SWINGS = {
     outputs.INDENTATION_STILL_GROWING: 0.0,
@@ -188,7 +188,8 @@ def _by_sphere(columns: dict[str, Any], table: Table) -> dict[str, np.ndarray[An
         for name, stem in stems.items()
         if stem in columns
     }
-    answers["status_of_spheres"] = answers["status_of_spheres"].astype(np.int32)
+    statuses = answers["status_of_spheres"] & ~STILL_GROWING  # of the series, not of one sphere
+    answers["status_of_spheres"] = statuses.astype(np.int32)
     return answers
 
 

@@ -12,12 +12,14 @@ from impactlab import wings
 from impactlab.law_texts import describe_laws
 from impactlab.model.parameters import PARAMETERS
 from impactlab.solver import outputs
-from impactlab.solver.outputs import GROWING, NO_GROWTH, STILL_GROWING
+from impactlab.solver.outputs import GROWING, NO_GROWTH
 from impactlab.solver.outputs import SHORT_PAUSE as SHORT_PAUSE
 
 if TYPE_CHECKING:
     import xarray as xr
 
+STILL_GROWING = outputs.NOT_STEADY | outputs.NO_SHAKEDOWN
+"""Bits that status has of the responses that a study lists, and `remarks` else."""
 _STOPPED = 256  # beside the kernels' bits: the 3-D model alone has it
 FAILURES: dict[str, tuple[int, str]] = {
     "diverged": (outputs.DIVERGED, "the run diverged; every response is missing"),

@@ -102,7 +102,7 @@ def figures(
         str | None, typer.Option(help="Of these panels: nature, science or plain (default).")
     ] = None,
 ) -> None:
-    """Draw all figures that apply to a study's results or findings.
+    """Draw all figures of a study's results or findings.
 
     With --width or --style, draw each panel as a file of its own instead, as SVG, PDF and PNG:
     FIGURE_PANEL_89mm.pdf. NAME is a study whose results are in results/NAME.
@@ -246,7 +246,7 @@ def calibrate(
     ] = "0",
     workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
 ) -> None:
-    """Infer parameters and weights of contact laws from measurements.
+    """Infer parameters, and weights of laws, from measurements.
 
     Solves the sample where it is not solved, calibrates its surrogate, and solves runs at the
     posterior to confirm it. Writes calibration.nc and its report, calibration.html, to

@@ -56,7 +56,7 @@ def studies(
     folder: Folder = Path("studies"),
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, for workflows.")] = False,
 ) -> None:
-    """List a folder's studies with their number of runs or checks."""
+    """List a folder's studies and how many runs they have."""
     files = sorted(folder.glob("*.yaml"))
     if not files:
         raise FileNotFoundError(f"{folder}: no study files (*.yaml) there")
@@ -108,7 +108,7 @@ def clean(
     results: Results = RESULTS,
     yes: Annotated[bool, typer.Option("--yes", help="Remove without asking.")] = False,
 ) -> None:
-    """Remove solved runs that no study of a folder needs any more.
+    """Remove solved runs that no study in a folder needs.
 
     Asks first. Runs that a changed study still needs stay, and so do runs.nc, the reports, and the
     runs of studies that have no file there.

@@ -175,8 +175,6 @@ GROWING = {
     "shakedown_strike": (("permanent_indentation", "plastic_dissipation"), NO_SHAKEDOWN),
 }
 """Strikes from which on quantities do not grow: which, and the bit of both flags without one."""
-STILL_GROWING = NOT_STEADY | NO_SHAKEDOWN
-"""These bits."""
 _WHOLE_RUN = DIVERGED | ENERGY_OUT_OF_BALANCE | EARLIER_STRIKE_UNFINISHED
 """Bits of runs without any response."""
 _ROUND_OFF = 1e-12

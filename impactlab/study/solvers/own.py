@@ -23,7 +23,6 @@ from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, SECTION, WORDS, with_values
 from impactlab.model.section import section_values
 from impactlab.simulate import run_dataset
-from impactlab.solver.outputs import STILL_GROWING
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy
 from impactlab.study.shard import Array, Columns
 from impactlab.study.solvers import Solver, flattened, on_design
@@ -31,7 +30,7 @@ from impactlab.study.solvers.fingerprint import fingerprint
 from impactlab.study.solvers.kernels import SOLVER as IMPACT
 from impactlab.study.solvers.kernels import kept
 from impactlab.study.store import OutputSpec
-from impactlab.variables import FLAGS, RESPONSES
+from impactlab.variables import FLAGS, RESPONSES, STILL_GROWING
 
 _NUMBERS = {"f": "f8", "i": "i8"}
 """Types of numbers in cases, by the kind of those that are drawn."""

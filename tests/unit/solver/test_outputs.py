@@ -14,7 +14,12 @@ def test_every_bit_has_one_name_and_no_two_share_a_bit(flags):
     bits = {name: bit for name, (bit, _) in flags.items()}
     kernels = {name: getattr(outputs, name.upper(), STOPPED) for name in flags}
     assert kernels == bits
-    assert sorted(bits.values()) == [2**power for power in range(len(bits))]
+    assert len(set(bits.values())) == len(bits)
+
+
+def test_bits_have_no_gaps():
+    bits = {bit for flags in (STATUS_FLAGS, WARNINGS) for bit, _ in flags.values()}
+    assert sorted(bits) == [2**power for power in range(len(bits))]
 
 
 def test_no_bit_of_the_kernels_is_without_a_name():
