@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from impactlab.solver.beam import SPRUNG, BeamGrid, BeamState, add_moment, copies
-from impactlab.solver.jit import allocating, compiled, summing
+from impactlab.solver.jit import allocating, compiled, joined, summing
 from impactlab.solver.section import (
     FAR,
     FibreSection,
@@ -126,7 +126,7 @@ def follow_tangents(
     return ended
 
 
-@compiled
+@joined
 def leave_tangents(
     beam: BeamState,
     now: int,
@@ -157,7 +157,7 @@ def leave_tangents(
         k += ONE
 
 
-@compiled
+@joined
 def begin_tangents(
     beam: BeamState,
     now: int,
@@ -222,7 +222,7 @@ def flow(
     return float(M_0)
 
 
-@compiled
+@joined
 def _yield(
     beam: BeamState,
     plastic_state: PlasticState,
@@ -245,7 +245,7 @@ def _yield(
     plastic_state.on_tangent[plastic_state.on_tangent[0]] = i
 
 
-@compiled
+@joined
 def _begin_tangent(
     beam: BeamState,
     plastic_state: PlasticState,
@@ -266,7 +266,7 @@ def _begin_tangent(
     plastic_state.kappa_min[i], plastic_state.kappa_max[i] = -FAR, FAR
 
 
-@compiled
+@joined
 def catch_up(plastic_state: PlasticState, section: FibreSection) -> None:
     """Bring the fibres of the sections on a tangent up to date."""
     for k in range(ONE, plastic_state.on_tangent[0] + ONE):

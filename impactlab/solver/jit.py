@@ -20,6 +20,9 @@ vectorised = _COMPILER.decorator(fastmath=True)
 summing = _COMPILER.decorator(fastmath=True, inline=FOLDER is None)
 """As vectorised; inlined where each process compiles, whose kernel would link another copy, with
 sums in another order, than a kernel from the cache."""
+joined = _COMPILER.decorator(inline=FOLDER is None)
+"""As compiled, for callers of `summing`: inlined with it, or the compiler inlines them only in some
+kernels, and the sums in them have another order there."""
 fused = _COMPILER.decorator(fastmath=True, inline=True)
 inlined = _COMPILER.decorator(inline=True)
 """Part of its callers: a State handed on at every step takes longer than the step."""
