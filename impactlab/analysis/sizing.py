@@ -46,7 +46,7 @@ class SizingVerdict(Verdict):
 
     USABLE = True, "runs at the design confirm its probability"
     AT_END = True, "runs confirm the best end of the ranges: wider ones may hold a better design"
-    UNREACHED = True, "even the best end of the ranges hardly reaches the limit: no run there did"
+    UNREACHED = False, "even the best end of the ranges hardly reaches the limit: no run there did"
     UNSOUND = False, "the probability at the design is not to be relied on"
     NOT_CONVERGED = False, "no estimate allowed meets the probability: allow more runs"
     IMPOSSIBLE = False, "no design in the ranges has so small a probability"

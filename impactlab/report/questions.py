@@ -99,11 +99,15 @@ def report_multifidelity(result: xr.Dataset, folder: Path) -> Path:
 
 
 def answers_beside(runs: xr.Dataset, folder: Path) -> Iterator[tuple[str, str, str]]:
-    """Yield subject, finding and page of the rare event and the design in a study's folder.
+    """Yield subject, finding and page of the answers to questions in a study's folder.
 
     A result of another text of the study than the runs' says so in place of its finding.
     """
-    for name, subject in ((RARE_EVENT, "Rare event"), (SIZING, "Design")):
+    for name, subject in (
+        (RARE_EVENT, "Rare event"),
+        (SIZING, "Design"),
+        (MULTIFIDELITY, "Two models"),
+    ):
         path = folder / f"{name}.nc"
         if not path.is_file() or not path.with_suffix(".html").is_file():
             continue

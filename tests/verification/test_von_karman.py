@@ -9,21 +9,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from scipy.optimize import brentq, minimize
+from scipy.optimize import brentq
 from scipy.special import ellipk
 
 import impactlab as il
 from impactlab.model.case_table import case_table
 from impactlab.model.section import fibre_table
-from impactlab.simulate import run_dataset
-from impactlab.solver.beam import CLAMPED, PINNED, make_beam, make_grid
+from impactlab.solver.beam import make_beam
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.fibre_plasticity import make_plastic_state
 from impactlab.solver.jit import compiled
-from impactlab.solver.outputs import SECOND_REST, STRETCHING_LEFT_OUT
+from impactlab.solver.outputs import STRETCHING_LEFT_OUT
 from impactlab.solver.responses import stretching
 from impactlab.solver.section import cut_whole_section, make_whole_room
-from impactlab.solver.settle_stretch import has_second_rest, static_axis
+from impactlab.solver.settle_stretch import static_axis
 from impactlab.solver.stability import discretise
 from impactlab.solver.state import State
 from impactlab.solver.von_karman import MODEL
@@ -328,79 +327,6 @@ def test_a_pulled_beams_vibrations_decay_by_the_bending_alone():
     spans = itertools.pairwise(crossings)
     peaks = [np.abs(w[(times > start) & (times < end)]).max() for start, end in spans]
     assert -np.diff(np.log(peaks)) / np.diff(crossings[1:]) == pytest.approx(decay, rel=5e-3)
-
-
-# rise over the radius of gyration from which a bowed beam without a load rests bowed the other way,
-# too: of a half-wave (pinned) and a whole one (clamped, as soon as no antisymmetric shape buckles)
-SECOND_REST_FROM = {"pinned": 4.0, "clamped": 19.565}
-
-
-@pytest.mark.parametrize("copies", [1, 2], ids=["whole", "half"])
-@pytest.mark.parametrize("ends", SECOND_REST_FROM)
-def test_a_second_rest_is_that_of_a_shallow_arch(ends, copies):
-    """Under N = P_1 (a/q - 1) an arch of rise a, stress-free there, has the rise q = -s < 0.
-
-    Its length asks for s^2 - a s + m^2 (2 r)^2 = 0 with m half-waves. The larger root is stable
-    unless N is below the second buckling load (of the clamped beam 8.183 pi^2 EI/L^2).
-    """
-    kind, waves = (PINNED, 1) if ends == "pinned" else (CLAMPED, 2)
-    grid = make_grid(401, 1.0 / 400, 1e-6, 1.0, 1.0, kind, kind, alike=copies == 2)
-    assert grid.copies == copies
-    x = (np.arange(grid.last + 3) - grid.first + 1) / 400.0
-    gyration = 1e-3
-    EA, k, room = 1.0 / gyration**2, waves * np.pi, np.zeros((5, x.size))
-    for share, expected in ((0.1, False), (0.99, False), (1.01, True), (3.0, True)):
-        rise = share * SECOND_REST_FROM[ends] * gyration / waves  # of each sine
-        bent = k**2 * rise * (-np.sin(k * x) if waves == 1 else np.cos(k * x))
-        longer = np.full(x.size, -EA * 0.25 * (k * rise) ** 2)
-        found = has_second_rest(np.zeros(x.size), room, bent, longer, 1.0, EA, 0.0, grid)
-        assert found is expected, share
-
-
-def rest_from(start, run, beam):
-    """Return the pinned beam's deflection (m) at rest near `start`, its energy (J) and stiffness.
-
-    By Newton's steps in a trust region, under the run's plastic strains; N is the same everywhere.
-    The stiffness (N/m) is that of the softest shape.
-    """
-    dx, E = beam.span / (run.x.size - 1), beam.material.youngs_modulus
-    z, area = beam.section.cut("lobatto", run.z.size)
-    plastic, share = run.plastic_strain.values, np.full(run.x.size, dx)
-    share[[0, -1]] *= 0.5
-    bent = -plastic @ (area * z) / (area @ z**2)
-    longer = share @ (plastic @ area) / area.sum()
-    EI, EA = E * (area @ z**2), E * area.sum()
-    bends = np.diff(np.eye(run.x.size), 2, axis=0)[:, 1:-1] / dx**2
-    slopes = np.diff(np.eye(run.x.size), axis=0)[:, 1:-1] / dx
-    stiff, turns = EI * dx * bends.T @ bends, dx * slopes.T @ slopes
-
-    def energy(w):
-        N = EA / beam.span * (0.5 * w @ turns @ w - longer)
-        total = 0.5 * EI * dx * ((bends @ w - bent[1:-1]) ** 2).sum() + 0.5 * N**2 * beam.span / EA
-        return total, stiff @ w - EI * dx * bends.T @ bent[1:-1] + N * turns @ w
-
-    def hessian(w):
-        N, pull = EA / beam.span * (0.5 * w @ turns @ w - longer), turns @ w
-        return stiff + N * turns + EA / beam.span * np.outer(pull, pull)
-
-    found = minimize(energy, start[1:-1], jac=True, hess=hessian, method="trust-exact")
-    return np.pad(found.x, 1), found.fun, np.linalg.eigvalsh(hessian(found.x))[0]
-
-
-@pytest.mark.parametrize(("depth", "twice"), [(0.006, True), (0.0065, False)])
-def test_a_second_rest_after_a_strike_is_remarked(depth, twice):
-    """In the one of two that has the least energy the beam is put to rest."""
-    impact = held(heavy(0.26, 20.0), depth=depth)
-    run = run_dataset(impact, GRID, duration=0.03, samples=2, strikes=1)
-    shape = run.deflection.values
-    rests = [rest_from(side * shape, run, impact.beam) for side in (1.0, -1.0)]
-    assert min(stiffness for _, _, stiffness in rests) > 0.0
-    (one, _, _), (other, _, _) = rests
-    assert (np.abs(one - other).max() > 0.2 * depth) == twice
-    least, _, _ = min(rests, key=lambda rest: rest[1])
-    residual = run.residual_deflection_over_strikes.item()
-    assert residual == pytest.approx(least[GRID.nodes // 2], rel=1e-5)
-    assert bool(run.remarks.item() & SECOND_REST) == twice
 
 
 @pytest.mark.parametrize(

@@ -20,18 +20,24 @@ GRID = il.Discretisation(nodes=33, points=5, scheme="modal")
 IMPACT = il.paper_impact(1.0, "finite_element")
 
 
-@pytest.fixture(scope="module")
-def strikes(tmp_path_factory):
-    """Runs of 9, 1 and 12 strikes, and the study."""
-    study = il.Study(
+def grid_study(responses, results):
+    """Return a study of 9, 1 and 12 strikes at two velocities."""
+    return il.Study(
         title="Strikes",
         impact=IMPACT,
         discretisation=GRID,
         duration="15 ms",
         sampling=il.Grid(parameters={"strikes": [9, 1, 12], "velocity": [0.5, 1.0]}),
-        responses=["permanent_indentation", "peak_force"],
-        results=tmp_path_factory.mktemp("results"),
+        responses=responses,
+        results=results,
     )
+
+
+@pytest.fixture(scope="module")
+def strikes(tmp_path_factory):
+    """Runs of 9, 1 and 12 strikes, and the study."""
+    responses = ["permanent_indentation", "peak_force"]
+    study = grid_study(responses, tmp_path_factory.mktemp("results"))
     return study.run(workers=1), study
 
 
@@ -75,15 +81,7 @@ GROWTH = ("steady_strike", "shakedown_strike")
 def test_strikes_without_growth_are_responses_of_a_grid(strikes, tmp_path):
     """Their values are those of a study that does not list them, and `status` explains gaps."""
     runs, _ = strikes
-    listed = il.Study(
-        title="Growth",
-        impact=IMPACT,
-        discretisation=GRID,
-        duration="15 ms",
-        sampling=il.Grid(parameters={"strikes": [9, 1, 12], "velocity": [0.5, 1.0]}),
-        responses=[*GROWTH, "peak_force"],
-        results=tmp_path,
-    ).run(workers=1)
+    listed = grid_study([*GROWTH, "peak_force"], tmp_path).run(workers=1)
     assert access.responses(listed) == ["peak_force", *GROWTH]
     for name in GROWTH:
         assert listed[name].values.tobytes() == runs[name].values.tobytes()
