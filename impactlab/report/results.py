@@ -45,7 +45,7 @@ FINDINGS = Kind(
 
 
 def stored_files(folder: Path) -> list[Path]:
-    """List the files of a study's results. Raises FileNotFoundError if there are none."""
+    """List the result files of a study. Raises FileNotFoundError if there are none."""
     for kind in (RUNS, FINDINGS):
         if (folder / kind.files[0]).exists():
             return [folder / name for name in kind.files]
