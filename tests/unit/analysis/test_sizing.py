@@ -103,6 +103,7 @@ def test_a_limit_that_the_lightest_design_hardly_reaches_is_not_taken_for_one_it
     far = 1000 / 20**1.5 * np.exp(40 * SCATTER)
     result = size(deflection, depths, 1, 3, far, 1e-3, seed=1, **SETTINGS)
     assert result.verdict is SizingVerdict.UNREACHED
+    assert not result.verdict.sound, "nobody has measured its coverage"
     assert result.objectives.tolist() == [20, 20, 20]
     assert result.runs < 7000, "it looked for more"
     near = 1000 / 20**1.5 * np.exp(4.5 * SCATTER)

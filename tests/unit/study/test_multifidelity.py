@@ -105,6 +105,15 @@ def test_a_budget_sets_the_numbers_of_both_models(tmp_path):
         il.multifidelity(impacts(tmp_path), FINE, budget="1 ms", workers=1)
 
 
+def test_the_report_of_the_study_tells_the_answer(tmp_path):
+    powers = study(tmp_path)
+    powers.run(workers=1)
+    answer = il.multifidelity(powers, {"power": 2}, runs=500, workers=1).answer.splitlines()[0]
+    page = powers.report().read_text("utf-8").replace("\xa0", " ")
+    assert f"Two models:</strong> {answer.removesuffix('.').replace(chr(39), '&#39;')} (<a" in page
+    assert 'href="multifidelity.html"' in page
+
+
 def test_pairs_without_an_answer_are_left_out_and_counted(tmp_path):
     result = il.multifidelity(study(tmp_path, sometimes_failing), {"power": 2}, runs=500, workers=1)
     missing = int(result.slow.isnull().sum())
