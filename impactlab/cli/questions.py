@@ -23,8 +23,7 @@ def rare(
         float, typer.Option(help="Coefficient of variation of the probability to reach.")
     ] = 0.1,
     surrogate: Annotated[
-        bool,
-        typer.Option("--surrogate", help="Let a Gaussian process place the runs: far fewer."),
+        bool, typer.Option("--surrogate", help="Let a Gaussian process place the runs: far fewer.")
     ] = False,
     workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
     dry_run: _DryRun = False,

@@ -64,8 +64,7 @@ def analyse(
 
 def predict(
     surrogate: Annotated[
-        Path,
-        argument("SURROGATE", "results/NAME/surrogate.nc, or results/NAME.", "surrogate.nc"),
+        Path, argument("SURROGATE", "results/NAME/surrogate.nc, or results/NAME.", "surrogate.nc")
     ],
     values: Annotated[
         list[str],

@@ -365,13 +365,7 @@ def go(
 
 
 def _solve(
-    study: Path,
-    declared: Declared,
-    stepwise: bool,
-    *,
-    workers: int,
-    force: bool,
-    replace: bool,
+    study: Path, declared: Declared, stepwise: bool, *, workers: int, force: bool, replace: bool
 ) -> None:
     """Verify, or solve what a report is made from; stepwise: keep the file of each step."""
     from impactlab.methods.sampling import RandomSample

@@ -60,12 +60,7 @@ def compare(
     with watched as progress:
         mesh, impact = plan.solved_mesh(), plan.case.impact
         solid = solve_on(
-            mesh,
-            impact,
-            duration=plan.duration,
-            threads=workers,
-            progress=progress,
-            frames=frames,
+            mesh, impact, duration=plan.duration, threads=workers, progress=progress, frames=frames
         )
     if "stopped" in solid.attrs and complete:
         folder = folder.parent / f"{folder.resolve().name}_stopped"

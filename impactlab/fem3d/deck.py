@@ -13,14 +13,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from impactlab.fem3d.solver.dataset import IMPACT_PARAMETERS
 from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.fem3d.solver.lattice import Integers
-from impactlab.fem3d.solver.mesh import (
-    BEAM,
-    FACES,
-    SPHERE,
-    Mesh,
-    check_mesh,
-    sphere_density,
-)
+from impactlab.fem3d.solver.mesh import BEAM, FACES, SPHERE, Mesh, check_mesh, sphere_density
 from impactlab.fem3d.solver.springs import Springs, springs_of
 from impactlab.fem3d.solver.system import refuse_rate
 from impactlab.model.bodies import Beam

@@ -56,12 +56,7 @@ def _against_velocity(
 
 
 def _add_curves(
-    ax: Axes,
-    runs: xr.Dataset,
-    analysis: xr.Dataset,
-    name: str,
-    along: xr.DataArray,
-    selected: Plan,
+    ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str, along: xr.DataArray, selected: Plan
 ) -> Display:
     """Draw the planned curves of a response over a parameter, and measurements; return its unit."""
     valid, across = usable(runs, name), display(along)
@@ -237,12 +232,7 @@ def parameter_effects(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 
 def response_curves(
-    ax: Axes,
-    runs: xr.Dataset,
-    analysis: xr.Dataset,
-    name: str,
-    along: xr.DataArray,
-    selected: Plan,
+    ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str, along: xr.DataArray, selected: Plan
 ) -> str:
     """Draw the planned curves of a response over a parameter, and measurements of it.
 

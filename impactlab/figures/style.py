@@ -64,11 +64,7 @@ SHEETS: dict[str, tuple[str, ...]] = {
     "science": ("science", "misc/no-latex"),
 }
 """Style sheets of SciencePlots by style; "plain" is the look of the reports."""
-_BOXED: dict[str, Any] = {
-    "axes.spines.top": True,
-    "axes.spines.right": True,
-    "axes.grid": False,
-}
+_BOXED: dict[str, Any] = {"axes.spines.top": True, "axes.spines.right": True, "axes.grid": False}
 """What those sheets take from matplotlib's defaults."""
 _FALLBACK = "DejaVu Sans"
 """Font of the letters that a sheet's font lacks, such as raised minus signs."""
@@ -173,9 +169,7 @@ def _one_of(
         first = axes[0] if axes else None
         axes.append(
             page.add_subplot(
-                axes_class=Panel,
-                sharex=first if sharex else None,
-                sharey=first if sharey else None,
+                axes_class=Panel, sharex=first if sharex else None, sharey=first if sharey else None
             )
         )
     return figure, axes

@@ -12,13 +12,7 @@ from typing import Annotated, Any, Self
 import numpy as np
 import scipy  # its stats are loaded when first used
 from numpy.typing import ArrayLike
-from pydantic import (
-    Field,
-    PlainValidator,
-    ValidationInfo,
-    field_validator,
-    model_validator,
-)
+from pydantic import Field, PlainValidator, ValidationInfo, field_validator, model_validator
 
 from impactlab.methods.entries import (
     ABOVE_ONE,
@@ -34,10 +28,7 @@ from impactlab.methods.entries import (
 )
 from impactlab.model.quantities import Quantity
 from impactlab.types import Floats
-from impactlab.validation.fields import (
-    Number,
-    Whole,
-)
+from impactlab.validation.fields import Number, Whole
 
 
 @dataclass(frozen=True)

@@ -7,24 +7,11 @@ from typing import Annotated, Any, ClassVar, Self
 import numpy as np
 import scipy  # its stats are loaded when first used
 from numpy.typing import ArrayLike
-from pydantic import (
-    PlainValidator,
-    StrictStr,
-    TypeAdapter,
-    ValidationInfo,
-    model_validator,
-)
+from pydantic import PlainValidator, StrictStr, TypeAdapter, ValidationInfo, model_validator
 
 from impactlab.model.quantities import Quantity, engineering, whole
 from impactlab.types import Floats
-from impactlab.validation.fields import (
-    LABEL,
-    Stated,
-    at_key,
-    quantity,
-    requires,
-    value_type,
-)
+from impactlab.validation.fields import LABEL, Stated, at_key, quantity, requires, value_type
 
 _NEGLIGIBLE = 1e-40  # share of the draws beyond either end of a quadrature
 _PANELS, _NODES = 40, 40  # of Gauss and Legendre

@@ -19,14 +19,7 @@ from pydantic import (
 )
 
 from impactlab.methods import frozen
-from impactlab.methods.distributions import (
-    CHOICE,
-    DISTRIBUTIONS,
-    ENTRIES,
-    Choice,
-    Fixed,
-    Integers,
-)
+from impactlab.methods.distributions import CHOICE, DISTRIBUTIONS, ENTRIES, Choice, Fixed, Integers
 from impactlab.methods.entries import Distribution, Entry
 from impactlab.methods.record import Indices
 from impactlab.methods.runs import Sample

@@ -15,14 +15,7 @@ from impactlab.solver import RULES
 from impactlab.types import Floats
 from impactlab.variables import WARNINGS
 from impactlab.verification.cases import discretised
-from impactlab.verification.finding import (
-    Comparisons,
-    Curve,
-    CurvePanel,
-    Finding,
-    Reference,
-    check,
-)
+from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, Reference, check
 from impactlab.verification.solutions import quadrature
 from impactlab.verification.solutions.beam_modes import modes_left_out, modes_on_nodes
 from impactlab.verification.solutions.contact_laws import LAWS

@@ -75,10 +75,7 @@ FUNCTIONS = {
         _ishigami_total_order(),
     ),
     "g": AnalyticFunction(
-        "Sobol's G function",
-        {f"x{i}": (0.0, 1.0) for i in range(1, 9)},
-        _g,
-        _g_total_order(),
+        "Sobol's G function", {f"x{i}": (0.0, 1.0) for i in range(1, 9)}, _g, _g_total_order()
     ),
 }
 """Every function by its name in study files."""

@@ -124,13 +124,7 @@ def blocks_of(blocks: int, piece: int, pieces: int) -> tuple[int, int]:
 
 @inlined
 def _answer(
-    s: Array,
-    state: Array,
-    past: Array,
-    dt: float,
-    metal: Metal,
-    hardens: bool,
-    rate: Rate | None,
+    s: Array, state: Array, past: Array, dt: float, metal: Metal, hardens: bool, rate: Rate | None
 ) -> None:
     """Update a block of elements with one integration point, and store its forces in `s`."""
     yielding = 0
@@ -145,13 +139,7 @@ def _answer(
 
 @inlined
 def _answer_full(
-    s: Array,
-    state: Array,
-    past: Array,
-    dt: float,
-    metal: Metal,
-    hardens: bool,
-    rate: Rate | None,
+    s: Array, state: Array, past: Array, dt: float, metal: Metal, hardens: bool, rate: Rate | None
 ) -> None:
     """Update a block of fully integrated elements, and store its forces in `s`."""
     for lane in range(W):

@@ -12,13 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from impactlab.fem3d.solver.estimates import (
-    checked_patch,
-    checked_size,
-    copies,
-    end_springs,
-    ends,
-)
+from impactlab.fem3d.solver.estimates import checked_patch, checked_size, copies, end_springs, ends
 from impactlab.fem3d.solver.impulses import bulges
 from impactlab.fem3d.solver.lattice import Integers, brick, graded, mirrored, quarter_sphere
 from impactlab.model.checks import positive

@@ -26,13 +26,7 @@ from impactlab.model.contact_compliance import TIMOSHENKO_ALONE, TIMOSHENKO_OPTI
 from impactlab.model.parameters import PARAMETERS, SECTION, Value
 from impactlab.model.plausibility import Extremes, implausibilities, numbers
 from impactlab.model.quantities import shown
-from impactlab.solver import (
-    BEAM_MODELS,
-    BENDING_MODELS,
-    LUMPED_MODELS,
-    RAYLEIGH,
-    WAVE_MODELS,
-)
+from impactlab.solver import BEAM_MODELS, BENDING_MODELS, LUMPED_MODELS, RAYLEIGH, WAVE_MODELS
 from impactlab.solver.outputs import GROWING
 from impactlab.study.schema.declarations import FunctionStudy, ImpactStudy, StudyFile
 from impactlab.validation.errors import unknown

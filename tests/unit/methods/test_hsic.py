@@ -65,9 +65,7 @@ def test_target_indices_are_those_of_the_limit(tmp_path):
 
     def study(**stated):
         sampling = il.Latin(
-            samples=256,
-            indices=["hsic", "target_hsic"],
-            parameters={"a": uniform, "b": uniform},
+            samples=256, indices=["hsic", "target_hsic"], parameters={"a": uniform, "b": uniform}
         )
         return il.Study(
             title="Limit",

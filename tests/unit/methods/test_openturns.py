@@ -85,10 +85,7 @@ def _indices(sampling, tmp_path):
     ranges = {name: il.Uniform(-np.pi, np.pi) for name in ("x1", "x2", "x3")}
     function = il.Function(_ishigami, vectorized=True)
     study = il.Study(
-        title="Ishigami",
-        function=function,
-        sampling=sampling(parameters=ranges),
-        results=tmp_path,
+        title="Ishigami", function=function, sampling=sampling(parameters=ranges), results=tmp_path
     )
     return il.analyse(study.run(workers=1)).isel(response=0)
 
