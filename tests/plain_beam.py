@@ -16,7 +16,7 @@ import numba
 import numpy as np
 
 import impactlab as il
-from impactlab.verification.solutions import contact_laws, quadrature
+from impactlab.verification.solutions import bending, contact_laws
 from impactlab.verification.solutions.beam_modes import modes_left_out, modes_on_nodes
 
 Array = np.ndarray[Any, Any]
@@ -241,7 +241,7 @@ def make_contact(impact: il.Impact) -> Contact:
 
 def make_bar(impact: il.Impact, grid: il.Discretisation) -> Bar:
     beam, material = impact.beam, impact.beam.material
-    positions, weights = quadrature.rule(grid.rule, grid.points)
+    positions, weights = bending.rule(grid.rule, grid.points)
     return Bar(
         material.density * beam.width * beam.depth,
         material.youngs_modulus,

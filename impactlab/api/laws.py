@@ -4,7 +4,7 @@ from impactlab.model.checks import require
 from impactlab.model.contact_law import ContactLaw
 from impactlab.model.flow_law import FlowLaw
 from impactlab.model.own_law import OwnLaw, adopt
-from impactlab.verification import flow_law, law_record
+from impactlab.verification import law_record
 
 
 def register(law: ContactLaw | FlowLaw) -> ContactLaw | FlowLaw:
@@ -43,7 +43,7 @@ def register(law: ContactLaw | FlowLaw) -> ContactLaw | FlowLaw:
     """
     require(isinstance(law, OwnLaw), "register", "law", law, "must be a ContactLaw or a FlowLaw")
     if isinstance(law, FlowLaw):
-        reasons, numbers = flow_law.refusals(law), flow_law.lines(law)
+        reasons, numbers = law_record.flow_refusals(law), law_record.flow_lines(law)
         heading, advice = "for steel:", "Correct it"
     else:
         reasons = law_record.refusals(law)

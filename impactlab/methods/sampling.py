@@ -18,8 +18,16 @@ from pydantic import (
     model_validator,
 )
 
-from impactlab.methods import frozen
-from impactlab.methods.distributions import CHOICE, DISTRIBUTIONS, ENTRIES, Choice, Fixed, Integers
+from impactlab.methods.distributions import (
+    CHOICE,
+    DISTRIBUTIONS,
+    ENTRIES,
+    Choice,
+    Fixed,
+    Integers,
+    is_frozen,
+    unfrozen,
+)
 from impactlab.methods.entries import Distribution, Entry
 from impactlab.methods.record import Indices
 from impactlab.methods.runs import Sample
@@ -191,9 +199,9 @@ class RandomSample(Sampling):
             Keys and values of the section.
         """
         entries: Any = self.parameters
-        if isinstance(entries, Mapping) and any(map(frozen.is_frozen, entries.values())):
+        if isinstance(entries, Mapping) and any(map(is_frozen, entries.values())):
             entries = {
-                name: frozen.distribution(name, item) if frozen.is_frozen(item) else item
+                name: unfrozen(name, item) if is_frozen(item) else item
                 for name, item in entries.items()
             }
             return replace(self, parameters=entries).stated()

@@ -70,6 +70,6 @@ FLOW_LAW_NAMES = LawNames(
     _NAMED,
     FLOW_LAWS_OUTSIDE,
     GROUP,
-    "impactlab.verification.flow_law:refusals",
+    "impactlab.verification.law_record:flow_refusals",
 )
 """Choices of the parameter `beam_flow_law`."""

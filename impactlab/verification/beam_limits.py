@@ -19,7 +19,7 @@ from impactlab.verification.finding import (
     check,
     rms_error,
 )
-from impactlab.verification.solutions import infinite_beam as closed
+from impactlab.verification.solutions import bending as closed
 from impactlab.verification.solutions import modal
 
 LONG_NODES = (801, 1601, 3201)
@@ -35,7 +35,7 @@ _TIME, _DEFLECTION = ("time", "s"), ("mid-span deflection", "m")
 
 @check(
     "Infinite beam under an impulse",
-    "Boussinesq 1885; closed forms in impactlab.verification.solutions.infinite_beam",
+    "Boussinesq 1885; closed forms in impactlab.verification.solutions.bending",
     Reference(
         "closed form",
         3e-6,

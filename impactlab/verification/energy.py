@@ -16,10 +16,9 @@ from impactlab.types import Floats
 from impactlab.variables import WARNINGS
 from impactlab.verification.cases import discretised
 from impactlab.verification.finding import Comparisons, Curve, CurvePanel, Finding, Reference, check
-from impactlab.verification.solutions import quadrature
+from impactlab.verification.solutions import bending
 from impactlab.verification.solutions.beam_modes import modes_left_out, modes_on_nodes
-from impactlab.verification.solutions.contact_laws import LAWS
-from impactlab.verification.solutions.stronge import stronge_impact
+from impactlab.verification.solutions.contact_laws import LAWS, stronge_impact
 
 
 @dataclass(frozen=True)
@@ -115,7 +114,7 @@ def _left_out(impact: Impact, grid: Discretisation, dt: float, runs: Sequence[xr
 
 def _stiffness(impact: Impact, grid: Discretisation) -> float:
     """Return EI in N m2, as the fibres have it."""
-    positions, weights = quadrature.rule(grid.rule, grid.points)
+    positions, weights = bending.rule(grid.rule, grid.points)
     return 1.5 * float(weights @ positions**2) * impact.beam.bending_stiffness
 
 
@@ -124,7 +123,7 @@ def _strain_energies(
 ) -> tuple[float, float]:
     """Return the (dissipated, stored) energy in J, fibre by fibre; curvature in 1/m, (nodes,)."""
     beam, material, x = impact.beam, impact.beam.material, run.x.values
-    _, area = beam.section.fibres(*quadrature.rule(grid.rule, grid.points))
+    _, area = beam.section.fibres(*bending.rule(grid.rule, grid.points))
     strain, peeq = run.plastic_strain.values, run.equivalent_plastic_strain.values
     elastic = -np.multiply.outer(curvature, run.z.values) - strain
     stored = 0.5 * material.youngs_modulus * elastic**2

@@ -4,6 +4,7 @@
 
 prints them as lines of the record of law NAME in solver/contact/__init__.py. A new law has to be
 listed there first, if only with its texts. All is for steel: E* = 115 GPa, S_y = 345 MPa, nu = 0.3.
+Flow laws from outside are checked here, too.
 """
 
 import math
@@ -274,6 +275,57 @@ def _impossible(functions: dict[str, Any], bodies: tuple[float, ...]) -> list[st
             if not abs(functions["damping"](force, delta, 0.0, *bodies)) <= _ROUNDING * force:
                 reasons.append("damping is not zero at rest")
     return list(dict.fromkeys(reasons))
+
+
+METALS = ((206e9, 345e6), (70e9, 250e6), (3e9, 60e6))
+"""E and S_y (Pa) of steel, aluminium and a polymer."""
+_STRAINS = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 61)])
+_FLOW_RATES = np.concatenate([[0.0], np.geomspace(1e-4, 1e6, 41)])
+_FLOW_ROUNDING = 1e-9
+_PRINTED = ((0.002, 0.0), (0.05, 0.0), (0.05, 1e3))
+
+
+@lru_cache(maxsize=8)
+def _compiled_flow(law: FlowLaw) -> Any:
+    return compiled_functions(law, {"flow_stress": (0.01, 1.0, *METALS[0])})["flow_stress"]
+
+
+def flow_refusals(law: FlowLaw) -> list[str]:
+    """Return what no flow law may do and this one does, in words; [] if nothing.
+
+    Raises ValueError if it is no code.
+    """
+    function, reasons = _compiled_flow(law), []
+    for metal in METALS:
+        stress = np.array([[function(p, rate, *metal) for rate in _FLOW_RATES] for p in _STRAINS])
+        if not np.isfinite(stress).all():
+            reasons.append("flow_stress is not finite for all p from 0 to 1 and rates to 1e6 1/s")
+            continue
+        stress /= metal[1]
+        if abs(stress[0, 0] - 1.0) > _FLOW_ROUNDING:
+            reasons.append(f"it begins at {stress[0, 0]:.5g} S_y, not at S_y")
+        falls = np.argwhere(np.diff(stress, axis=0) < -_FLOW_ROUNDING)
+        if falls.size:
+            p = _STRAINS[falls[0, 0] + 1]
+            reasons.append(
+                f"the stress falls at p = {p:.3g}: all bending would go to one section, however "
+                "short the spacing"
+            )
+        falls = np.argwhere(np.diff(stress, axis=1) < -_FLOW_ROUNDING)
+        if falls.size:
+            reasons.append(
+                f"the stress falls with the rate at {_FLOW_RATES[falls[0, 1] + 1]:.3g} 1/s"
+            )
+    return list(dict.fromkeys(reasons))
+
+
+def flow_lines(law: FlowLaw) -> list[str]:
+    """Return the numbers of a flow law for steel, in lines."""
+    function, steel = _compiled_flow(law), METALS[0]
+    ratios = [(p, rate, function(p, rate, *steel) / steel[1]) for p, rate in _PRINTED]
+    return [
+        f"flow stress at p = {p}, rate {rate:g} 1/s: {ratio:.4g} S_y" for p, rate, ratio in ratios
+    ]
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ from impactlab.verification.finding import (
     Reference,
     check,
 )
-from impactlab.verification.solutions import beam_modes, bending, fibre_beam, quadrature
+from impactlab.verification.solutions import beam_modes, bending, fibre_beam
 
 _HARDENING = {
     "perfectly plastic": {},
@@ -59,7 +59,7 @@ def moment_curvature() -> Finding:
         for rule in RULES:
             for points in _POINTS:
                 ours.append(_moments(beam, rule, points, kappa))
-                expected.append(bending.path_moments(beam, kappa, *quadrature.rule(rule, points)))
+                expected.append(bending.path_moments(beam, kappa, *bending.rule(rule, points)))
         where = f"{name}; every rule with {', '.join(map(str, _POINTS))} points, its own fibres"
         fibres = np.concatenate(ours), np.concatenate(expected)
         fine, exact = _moments(beam, "legendre", 100, kappa), _exact_moments(beam, kappa)
@@ -88,7 +88,7 @@ def _moments(beam: Beam, rule: str, points: int, curvatures: Floats) -> Floats:
 def _exact_moments(beam: Beam, kappa: Floats) -> Floats:
     """Return Masing's closed form or, for isotropic hardening, the moments of 2000 fibres."""
     if beam.material.isotropic_hardening_modulus:
-        return bending.path_moments(beam, kappa, *quadrature.rule("legendre", 2000))
+        return bending.path_moments(beam, kappa, *bending.rule("legendre", 2000))
     farthest = int(np.argmax(kappa))
     lowest, turn = int(np.argmin(kappa)), float(kappa[farthest])
     return np.concatenate(
@@ -119,7 +119,7 @@ def static_deflection() -> Finding:
     panels: list[CurvePanel] = []
     for rule, points in (("lobatto", 9), ("lobatto", 2), ("layers", 5)):
         run = run_dataset(impact, Discretisation(nodes=101, points=points, rule=rule), duration=1.2)
-        positions, weights = quadrature.rule(rule, points)
+        positions, weights = bending.rule(rule, points)
         # The rule's second moment of area over the exact one.
         force = run.contact_force.values / float(1.5 * np.sum(weights * positions**2))
         expected = _bent(beam, force, bending.static_deflection(beam, 1.0))
@@ -195,7 +195,7 @@ def static_collapse() -> Finding:
     comparisons.relative("collapse load", "N", _plateau(run), limit, 5e-4)
     far = np.array([1e3 * bending.yield_curvature(perfect)])
     for number in (3, 9):
-        rule = quadrature.rule("lobatto", number)
+        rule = bending.rule("lobatto", number)
         plastic_load = 4.0 / perfect.span * bending.path_moments(perfect, far, *rule).item()
         plateau = _plateau(_run_collapse(perfect, "lobatto", number))
         comparisons.at(f"{number} Lobatto points; 4/L times the rule's own plastic moment")
@@ -297,7 +297,7 @@ def _struck(mass_ratio: float, energy_ratio: float) -> tuple[Impact, xr.Dataset]
 
 def _permanent_deflection(run: xr.Dataset) -> float:
     """Return the deflection (m) that the plastic strains leave, by the unit-load theorem."""
-    _, weights = quadrature.rule(_MODE_GRID.rule, _MODE_GRID.points)
+    _, weights = bending.rule(_MODE_GRID.rule, _MODE_GRID.points)
     x, z = run.x.values, run.z.values
     curvature = run.plastic_strain.values @ (weights * z) / (weights @ z**2)
     near = np.minimum(x, x[-1] - x)

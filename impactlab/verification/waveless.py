@@ -22,9 +22,13 @@ from impactlab.verification.finding import (
     check,
 )
 from impactlab.verification.solutions import hertz, lumped, modal
-from impactlab.verification.solutions.contact_laws import LAWS, LawOnHalfSpace, law_on_half_space
+from impactlab.verification.solutions.contact_laws import (
+    LAWS,
+    LawOnHalfSpace,
+    law_on_half_space,
+    stronge_impact,
+)
 from impactlab.verification.solutions.hertz import HuntCrossleyImpact
-from impactlab.verification.solutions.stronge import stronge_impact
 
 # With so small a Courant number the contact alone determines the time step.
 _GRID = Discretisation(nodes=11, points=3, courant=0.005)

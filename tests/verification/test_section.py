@@ -10,7 +10,7 @@ from impactlab.solver import RULES
 from impactlab.solver.section import bend as bend_row
 from impactlab.solver.types import CASE
 from impactlab.verification.cases import with_beam_material
-from impactlab.verification.solutions import bending, quadrature
+from impactlab.verification.solutions import bending
 
 IMPACT = il.paper_impact()
 
@@ -44,7 +44,7 @@ def moments(cut, curvatures):
 @pytest.mark.parametrize("points", [2, 3, 4, 5, 9, 21, 64])
 def test_monotone_bending_is_that_of_the_rule(rule, points):
     cut, beam = make_section(points, rule)
-    positions, weights = quadrature.rule(rule, points)
+    positions, weights = bending.rule(rule, points)
     curvatures = np.linspace(0.1, 20, 40) * bending.yield_curvature(beam)
     ours, _, _ = moments(cut, curvatures)
     expected = bending.path_moments(beam, curvatures, positions, weights)

@@ -11,7 +11,7 @@ import pytest
 from impactlab.model.discretisation import Discretisation
 from impactlab.simulate import simulate
 from impactlab.verification.cases import rigid_backed
-from impactlab.verification.solutions.stronge import stronge_impact
+from impactlab.verification.solutions.contact_laws import stronge_impact
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 

@@ -28,9 +28,14 @@ from impactlab.paper.statements.statement import (
     statement,
 )
 from impactlab.types import Floats
-from impactlab.verification.solutions import bending, hertz, quadrature
-from impactlab.verification.solutions.contact_laws import LAWS
-from impactlab.verification.solutions.stronge import CONSTRAINT, HARDNESS, U_PLASTIC, stronge_impact
+from impactlab.verification.solutions import bending, hertz
+from impactlab.verification.solutions.contact_laws import (
+    CONSTRAINT,
+    HARDNESS,
+    LAWS,
+    U_PLASTIC,
+    stronge_impact,
+)
 
 EQUAL = 1e-9  # relative difference within which two forces agree
 
@@ -332,7 +337,7 @@ def few_points(data: Data, rule: str, points: int, literal: bool) -> Assessment:
     # At a thousand times that of first yield every fibre but one on the axis has yielded.
     curvature = np.array([1e-6, 1e3]) * bending.yield_curvature(beam)
     exact = np.array([beam.bending_stiffness * curvature[0], bending.plastic_moment(beam)])
-    moments = bending.path_moments(beam, curvature, *quadrature.rule(rule, points))
+    moments = bending.path_moments(beam, curvature, *bending.rule(rule, points))
     ratios = dict(zip(("stiffness", "full plastic moment"), moments / exact, strict=True))
     numbers = tuple(
         Number(f"{name} over the exact one", float(ratio), "1") for name, ratio in ratios.items()

@@ -18,7 +18,7 @@ from impactlab.paper.statements.statement import (
     runs_of,
     statement,
 )
-from impactlab.verification.solutions.stronge import stronge_impact
+from impactlab.verification.solutions.contact_laws import stronge_impact
 
 CONTACT_STUDY = "fig08"  # the first contact over velocities, contact laws, beam models and grids
 

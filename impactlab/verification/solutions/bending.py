@@ -1,4 +1,4 @@
-"""A beam bent beyond yield, loaded once or to and fro, and its collapse under a striker.
+"""A beam bent beyond yield, loaded once or to and fro, its collapse, and a beam without ends.
 
 Moments have the sign of the curvature here (docs/theory.md's M = B * integral of z sigma dz,
 with strain -z kappa, has the opposite one). Loaded once, the material is elastic, then hardens
@@ -23,6 +23,11 @@ the beam, its energy large against what the beam can store, and the rotation sma
 Sources: Prager and Hodge, Theory of Perfectly Plastic Solids (1951), chapter 2; Martin and Symonds,
 Mode approximations for impulsively loaded rigid-plastic structures, J. Eng. Mech. Div. ASCE 92
 (1966); Jones, Structural Impact (1989), chapter 3.
+
+The infinite elastic beam, struck at x = 0, holds for a finite span until the supports' echo is
+back: J. Boussinesq (1885); the Fourier integral of mu w_tt + EI w_xxxx = J delta(x) delta(t),
+w(x, t) = J/(pi mu k) * integral of sin(k q^2 t) cos(q x)/q^2 over q > 0, k = sqrt(EI/mu),
+mu = rho A.
 """
 
 import math
@@ -32,6 +37,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.integrate import quad
 from scipy.optimize import brentq
+from scipy.special import fresnel, roots_jacobi, roots_legendre
 
 from impactlab.model.bodies import Beam
 from impactlab.model.impact import Impact
@@ -239,3 +245,84 @@ def elastic_plastic_deflection(impact: Impact) -> float:
     """
     beam, load = impact.beam, collapse_load(impact.beam)
     return mode_deflection(impact) + missing_work(beam) / load - static_deflection(beam, load)
+
+
+def rule(name: str, points: int) -> tuple[Floats, Floats]:
+    """Return an integration rule on [-1, 1]: ascending positions, weights, both (points,).
+
+    "lobatto": both ends, exact up to degree 2 points - 3; between the ends lie the Gauss points for
+    the weight 1 - x^2, which are roots of the Jacobi polynomial P^(1,1), their weights divided by
+    1 - x^2. "legendre": no ends, exact up to degree 2 points - 1. "layers": the midpoints of equal
+    layers (Zhang et al.), exact up to degree 1.
+
+    Source: Davis and Rabinowitz, Methods of Numerical Integration (1984), section 2.7. Raises
+    ValueError when the name is unknown.
+    """
+    if name == "layers":
+        return (2.0 * np.arange(points) + 1.0) / points - 1.0, np.full(points, 2.0 / points)
+    if name == "legendre":
+        positions, weights = roots_legendre(points)
+        return positions, weights
+    if name != "lobatto":
+        raise ValueError(f"rule = {name!r}: must be one of lobatto, legendre, layers")
+    end = 2.0 / (points * (points - 1))
+    if points == 2:
+        return np.array([-1.0, 1.0]), np.array([end, end])
+    inner, jacobi_weights = roots_jacobi(points - 2, 1.0, 1.0)
+    positions = np.concatenate(([-1.0], inner, [1.0]))
+    return positions, np.concatenate(([end], jacobi_weights / (1.0 - inner**2), [end]))
+
+
+def deflection_under_impulse(beam: Beam, impulse: float, time: ArrayLike) -> Floats:
+    """Return w(0, t) = J sqrt(t)/(mu sqrt(2 pi k)) in m.
+
+    The deflection where an `impulse` J (N s) struck at t = 0, at each `time` (s, any shape).
+    """
+    return _impulse_scale(beam, impulse) * np.sqrt(np.asarray(time, dtype=np.float64))
+
+
+def profile_under_impulse(beam: Beam, impulse: float, time: ArrayLike, x: ArrayLike) -> Floats:
+    """Return w(x, t) in m at each distance `x` (m) from where an `impulse` J (N s) struck.
+
+    w(x, t) = w(0, t) (cos(a^2) + sin(a^2) - sqrt(2 pi) a (C - S)), a = |x|/(2 sqrt(k t)), with
+    Fresnel's integrals C and S at a sqrt(2/pi): w_xx of the Fourier integral, integrated twice.
+    time (s) and x broadcast.
+    """
+    seconds = np.asarray(time, dtype=np.float64)
+    a = np.abs(np.asarray(x, dtype=np.float64)) / (2.0 * np.sqrt(_wave_constant(beam) * seconds))
+    S, C = fresnel(a * math.sqrt(2.0 / math.pi))
+    shape = np.cos(a**2) + np.sin(a**2) - math.sqrt(2.0 * math.pi) * a * (C - S)
+    return np.asarray(_impulse_scale(beam, impulse) * np.sqrt(seconds) * shape)
+
+
+def deflection_under_force(beam: Beam, time: Floats, force: Floats) -> Floats:
+    """Return w(0, t) in m at each `time` (s, shape (n,), ascending) under a `force` (N, (n,)).
+
+    The response to an impulse convolved with the force, exactly so for a force that begins at zero
+    and is linear between the times: every kink begins a ramp, and a ramp of s (N/s) leaves
+    (4/15) s t^2.5/(mu sqrt(2 pi k)).
+    """
+    return _impulse_scale(beam, 4.0 / 15.0) * _ramps(time, force, 2.5)
+
+
+def curvature_under_force(beam: Beam, time: Floats, force: Floats) -> Floats:
+    """Return w_xx(0, t) = -w_t(0, t)/k in 1/m; see deflection_under_force."""
+    return -_impulse_scale(beam, 2.0 / 3.0) / _wave_constant(beam) * _ramps(time, force, 1.5)
+
+
+def _wave_constant(beam: Beam) -> float:
+    """Return k in m2/s."""
+    return math.sqrt(beam.bending_stiffness / beam.mass_per_length)
+
+
+def _impulse_scale(beam: Beam, impulse: float) -> float:
+    """Return J/(mu sqrt(2 pi k)), in m s^-0.5 for J in N s."""
+    root = math.sqrt(2.0 * math.pi * _wave_constant(beam))
+    return impulse / (beam.mass_per_length * root)
+
+
+def _ramps(time: Floats, force: Floats, power: float) -> Floats:
+    """Sum over the kinks of a force, before each time: change of slope x (time since)^power."""
+    kinks = np.diff(np.diff(force) / np.diff(time), prepend=0.0)
+    since = np.maximum(time[:, np.newaxis] - time[:-1], 0.0)
+    return np.asarray(since**power @ kinks)

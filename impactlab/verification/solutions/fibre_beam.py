@@ -19,7 +19,7 @@ from scipy.sparse import csr_array
 from impactlab.model.bodies import Beam
 from impactlab.model.impact import Impact
 from impactlab.types import Floats
-from impactlab.verification.solutions import quadrature
+from impactlab.verification.solutions import bending
 from impactlab.verification.solutions.contact_laws import LawOnHalfSpace, law_on_half_space
 
 _GRADING = 1.5  # distances from mid-span go with this power of the element's number
@@ -61,7 +61,7 @@ def solve(
         material.isotropic_hardening_modulus,
         material.kinematic_hardening_modulus,
     )
-    z, area = beam.section.fibres(*quadrature.rule(rule, points))
+    z, area = beam.section.fibres(*bending.rule(rule, points))
     bend, length, mass = _elements(beam, elements)
     mass[-1, -1] = 0.5 * impact.sphere.total_mass
     size = len(mass)
@@ -135,7 +135,7 @@ def _elements(beam: Beam, elements: int) -> tuple[Floats, Floats, Floats]:
     sections in m; mass in kg, the sphere's left at zero.
     """
     ends = 0.5 * beam.span * (1.0 - np.linspace(1.0, 0.0, elements + 1) ** _GRADING)
-    gauss, weights = quadrature.rule("legendre", 2)
+    gauss, weights = bending.rule("legendre", 2)
     s = 0.5 * (gauss + 1.0)
     size = 2 * elements + 2
     bend, lengths = np.zeros((2 * elements, size)), np.zeros(2 * elements)

@@ -11,7 +11,7 @@ from impactlab.model.case_table import case_table
 from impactlab.model.discretisation import integration_rule
 from impactlab.model.section import SHAPES, fibre_table, section_of
 from impactlab.solver import RULES
-from impactlab.verification.solutions import quadrature
+from impactlab.verification.solutions import bending
 
 COUNTS = [*range(2, 22), 32, 33, 48, 63, 64]
 STEEL = il.paper_impact().beam.material
@@ -22,7 +22,7 @@ DEGREE = {"lobatto": lambda n: 2 * n - 3, "legendre": lambda n: 2 * n - 1, "laye
 @pytest.mark.parametrize("points", COUNTS)
 def test_points_and_weights_are_those_of_scipy(rule, points):
     positions, weights = integration_rule(rule, points)
-    expected_positions, expected_weights = quadrature.rule(rule, points)
+    expected_positions, expected_weights = bending.rule(rule, points)
     np.testing.assert_allclose(positions, expected_positions, rtol=1e-13, atol=1e-14)
     np.testing.assert_allclose(weights, expected_weights, rtol=1e-11, atol=0)
     np.testing.assert_array_equal(positions, -positions[::-1])
@@ -54,7 +54,7 @@ def test_plate_of_a_rectangle():
 
 def test_a_rectangles_shear_coefficient_is_five_sixths_of_energy():
     """k = A / integral of (A s/I b)^2 dA: the shear stress (1 - (2z/H)^2) 3/2 of the mean."""
-    x, weights = quadrature.rule("legendre", 8)
+    x, weights = bending.rule("legendre", 8)
     energy = 0.5 * weights @ (1.5 * (1 - x**2)) ** 2
     k = il.paper_impact().beam.section.shear_coefficient(0.3)
     assert k == il.paper_impact().beam.shear_correction == pytest.approx(1 / energy, rel=1e-14)
@@ -67,7 +67,7 @@ def test_kernels_get_the_fibres_above_the_axis_twice_outermost_first():
     table = fibre_table(cases)
     assert table.shape == (3, 3, 4)
     for case, row, rule in zip(cases, table, varied["rule"], strict=True):
-        z, area = section_of(case).fibres(*quadrature.rule(rule, int(case.points)))
+        z, area = section_of(case).fibres(*bending.rule(rule, int(case.points)))
         half = case.points // 2
         np.testing.assert_allclose(row[0, :half], z[::-1][:half], rtol=1e-13)
         np.testing.assert_allclose(row[1, :half], 2 * area[::-1][:half], rtol=1e-11)

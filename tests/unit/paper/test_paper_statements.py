@@ -15,7 +15,7 @@ from impactlab.paper.statements import (
 )
 from impactlab.paper.statements.statement import Ruling, Subject
 from impactlab.solver import outputs
-from impactlab.verification.solutions.stronge import stronge_impact
+from impactlab.verification.solutions.contact_laws import stronge_impact
 
 HOLDS, READING, FAILS, UNKNOWN = Ruling
 GRIDS = [301, 601, 1201]

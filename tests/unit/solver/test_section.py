@@ -13,7 +13,7 @@ from impactlab.solver import RULES
 from impactlab.solver.fibre_plasticity import plastic_energies
 from impactlab.solver.section import bend as bend_row
 from impactlab.solver.section import elastic_range, return_mapping
-from impactlab.verification.solutions import quadrature
+from impactlab.verification.solutions import bending
 
 HARDENINGS = [(0.0, 0.0), (5e9, 0.0), (0.0, 5e9), (2e9, 3e9)]
 every_hardening = pytest.mark.parametrize(("isotropic", "kinematic"), HARDENINGS)
@@ -55,7 +55,7 @@ def follow(section, curvatures):
 @pytest.mark.parametrize("points", [2, 3, 8, 9])
 def test_fibres_are_the_rules_scaled_to_the_depth(cut, rule, points):
     section = cut(rule, points)
-    positions, weights = quadrature.rule(rule, points)
+    positions, weights = bending.rule(rule, points)
     z, area = positions * 0.0139, weights * 0.0139 * 0.06
     upper = slice(None, -(points // 2) - 1, -1)
     assert section.z == pytest.approx(z[upper], rel=1e-12)

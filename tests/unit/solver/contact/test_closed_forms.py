@@ -15,7 +15,7 @@ from impactlab.solver.contact.stronge import (
     curve,
     yield_indentation,
 )
-from impactlab.verification.solutions.stronge import StrongeImpact
+from impactlab.verification.solutions.contact_laws import StrongeImpact
 
 E, R, S_y, nu = 115e9, 0.035, 345e6, 0.3
 LAW = StrongeImpact(E, R, S_y)

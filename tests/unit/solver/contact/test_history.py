@@ -17,7 +17,7 @@ from impactlab.solver.contact.history import (
 )
 from impactlab.solver.contact.switch import curve
 from impactlab.verification.solutions import hertz
-from impactlab.verification.solutions.stronge import StrongeImpact
+from impactlab.verification.solutions.contact_laws import StrongeImpact
 
 E, R, S_y, nu = 115e9, 0.035, 345e6, 0.3
 STRONGE = StrongeImpact(E, R, S_y)

@@ -8,7 +8,7 @@ from scipy.integrate import quad
 
 from impactlab.model.impact import paper_impact
 from impactlab.verification.solutions import bending
-from impactlab.verification.solutions.quadrature import rule
+from impactlab.verification.solutions.bending import rule
 
 BEAM = paper_impact().beam
 HARDENING = replace(

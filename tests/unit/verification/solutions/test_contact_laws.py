@@ -10,10 +10,10 @@ from impactlab.verification.solutions import hertz
 from impactlab.verification.solutions.contact_laws import (
     LAWS,
     LawOnHalfSpace,
+    StrongeImpact,
     joints,
     law_on_half_space,
 )
-from impactlab.verification.solutions.stronge import StrongeImpact
 
 E, R, S, nu = 115e9, 0.035, 345e6, 0.3
 MASS = 1.4

@@ -8,7 +8,7 @@ from scipy.special import beta
 
 from impactlab.model.impact import paper_impact
 from impactlab.verification.solutions.beam_modes import odd_modes
-from impactlab.verification.solutions.infinite_beam import (
+from impactlab.verification.solutions.bending import (
     curvature_under_force,
     deflection_under_force,
     deflection_under_impulse,

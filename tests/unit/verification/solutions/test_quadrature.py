@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from impactlab.verification.solutions.quadrature import rule
+from impactlab.verification.solutions.bending import rule
 
 DEGREE = {"lobatto": lambda n: 2 * n - 3, "legendre": lambda n: 2 * n - 1, "layers": lambda n: 1}
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from impactlab.model.impact import paper_impact
-from impactlab.verification.solutions.stronge import StrongeImpact, stronge_impact
+from impactlab.verification.solutions.contact_laws import StrongeImpact, stronge_impact
 
 BODIES = StrongeImpact(115e9, 0.035, 345e6)
 MASS = 1.4
