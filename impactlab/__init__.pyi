@@ -11,7 +11,7 @@ from .api.laws import register as register
 from .api.questions import multifidelity as multifidelity
 from .api.questions import rare_event as rare_event
 from .api.questions import size as size
-from .fem3d.witness import witness as witness
+from .fem3d.comparison import witness as witness
 from .methods.delta import Delta as Delta
 from .methods.distributions import Choice as Choice
 from .methods.distributions import Integers as Integers

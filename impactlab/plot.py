@@ -28,7 +28,7 @@ from impactlab.figures import (
     style,
 )
 from impactlab.figures.curves import plan
-from impactlab.figures.rare_event import FIGURES
+from impactlab.figures.questions import FIGURES
 from impactlab.methods import INDICES
 from impactlab.study.schema.measurement_files import read_measurements
 from impactlab.validation.errors import unknown

@@ -1,9 +1,15 @@
-"""A 3-D run beside the beam models: solved, compared, written to files, drawn and printed."""
+"""A 3-D run beside the beam models: solved, compared, written to files, drawn and printed.
+
+`witness` is the comparison from Python, which keeps nothing.
+"""
+
+from __future__ import annotations
 
 import tempfile
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import partial
+from os import cpu_count
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +21,8 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from impactlab.fem3d.figures.run import animation, draw_witness
-from impactlab.fem3d.page import write_comparison
-from impactlab.fem3d.plan import RunPlan, beam_models
+from impactlab.fem3d.plan import Case, RunPlan, beam_models, planned
+from impactlab.fem3d.report import write_comparison
 from impactlab.fem3d.solver import solve_on
 from impactlab.fem3d.solver.march import Progress
 from impactlab.fem3d.wing import SOLID, UNLIKE
@@ -24,8 +30,10 @@ from impactlab.figures import labels
 from impactlab.figures.animation import FILE
 from impactlab.figures.labels import display
 from impactlab.files import opened, replaced, write_netcdf
+from impactlab.model.checks import instance
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import Impact
+from impactlab.model.quantities import Quantity, in_si
 from impactlab.simulate import run_dataset
 from impactlab.variables import RESPONSES, attributes, reasons, status_bits
 
@@ -225,3 +233,77 @@ def _cell(value: float, share: float) -> str:
         return "missing"
     digits = 1 if abs(share) < 9.95 else 0
     return f"{value:.4g}" + ("" if np.isnan(share) else f" {share:+.{digits}f}%")
+
+
+_CORES = cpu_count() or 1
+_LONGEST = 5e-3  # simulated time in s within which the first contact has to end
+
+
+def witness(
+    impact: Impact,
+    discretisation: Discretisation | None = None,
+    *,
+    element_size: Quantity = None,
+    patch: Quantity = None,
+    duration: Quantity = None,
+    workers: int = _CORES,
+    force: bool = False,
+) -> xr.Dataset:
+    """Compare the beam models with 3-D finite elements on one impact.
+
+    Nothing is kept: the command `impactlab witness` keeps fields, figures and a report.
+
+    Parameters
+    ----------
+    impact : Impact
+        Sphere, beam and velocity; its model of the beam plays no part.
+    discretisation : Discretisation, optional
+        Nodes and points of the beam models; by default `Discretisation()`.
+    element_size : Quantity, optional
+        Size of the elements about the contact, in m; by default one that takes at most two minutes
+        of one core.
+    patch : Quantity, optional
+        Half the side of the square in which the bodies may touch, in m; by default an estimate.
+    duration : Quantity, optional
+        Simulated time, in s; by default 2.25 times the first contact of the Euler-Bernoulli beam.
+    workers : int, optional
+        Number of threads; by default that of the machine's cores.
+    force : bool, default False
+        True to run even if it takes more than an hour, or more memory than there is.
+
+    Returns
+    -------
+    xarray.Dataset
+        `value` in SI units, and `difference` relative to the 3-D model, on (response, model);
+        `status` on model says why a value is NaN. Responses that are not the same quantity in 3-D
+        have no difference. The attribute `element_size` (m) tells the elements.
+
+    Raises
+    ------
+    ValueError
+        If a value is not valid, the 3-D model has no such beam, a limit is exceeded, or the 3-D run
+        stops before its end.
+
+    Examples
+    --------
+    >>> models = il.witness(il.paper_impact("1 m/s"), element_size="4 mm", duration="0.3 ms")
+    >>> models.model.values.tolist()
+    ['solid', 'euler_bernoulli', 'timoshenko', 'spring_mass']
+    >>> f"{models.difference.sel(response='peak_force', model='timoshenko'):+.0%}"
+    '-...%'
+    """
+    instance("witness", "impact", impact, Impact)
+    lengths = {"element_size": (element_size, "m"), "patch": (patch, "m")}
+    wishes = lengths | {"duration": (duration, "s")}
+    numbers = {name: in_si(f"witness.{name}", *wish) for name, wish in wishes.items()}
+    grid = discretisation or Discretisation()
+    plan = planned(Case("witness", "witness", impact, grid, _LONGEST, {}), **numbers)
+    if (problem := plan.problem(workers)) and not force:
+        raise ValueError(problem)
+    solid = solve_on(plan.solved_mesh(), impact, duration=plan.duration, threads=workers)
+    if stopped := str(solid.attrs.get("stopped", "")):
+        if stopped.startswith("interrupted"):
+            raise KeyboardInterrupt(stopped)
+        raise ValueError(f"witness: the 3-D run stopped: {stopped}")
+    models = compared(solid, simulate_beams(impact, grid, plan.duration))
+    return models.assign_attrs(element_size=plan.element_size, duration=plan.duration)

@@ -1,28 +1,121 @@
 """The data of a figure, as drawn: its curves and bars as files, in the axes' units, and in words.
 
-The panels of a figure hand over the numbers (panel.py). NAME.csv has a row per point; NAME.nc holds
+Panels hand over the numbers drawn in them. NAME.csv has a row per point; NAME.nc holds
 the same as CF's contiguous ragged arrays. Bars of named things have the name in `category`, points
 with error bars the ends of these in `low` and `high`. A map of colours has no curves: its numbers
 are in analysis.nc.
 """
 
 import csv
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
+from matplotlib.container import BarContainer, ErrorbarContainer
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FixedFormatter
+from numpy.typing import ArrayLike, NDArray
 
 from impactlab.figures import labels
-from impactlab.figures.panel import Panel, Series
 from impactlab.files import replaced, write_netcdf
 from impactlab.types import Floats
+
+
+@dataclass(frozen=True)
+class Series:
+    """One curve, or the ends of one kind of bars: its label, and points of shape (points,).
+
+    low, high: ends of the error bar of each point, along the axis of its value; else NaN.
+    """
+
+    label: str
+    x: Floats
+    y: Floats
+    low: Floats
+    high: Floats
+
+
+class Panel(Axes):
+    """Axes that keep what `plot`, `step`, `errorbar`, `bar`, `barh` and `hist` draw.
+
+    Lines without a label, or with one that starts with "_", are guides and are left out; "_only"
+    labels the only curve of a panel, which needs no name, and "_data: LABEL" one that the legend
+    leaves out. names: of the places 0, 1, ... along "x" or "y", see `name_places`.
+    """
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        """Begin without data."""
+        self.names: dict[str, list[str]] = {}
+        self._points: list[tuple[Any, ...]] = []  # arguments of _series
+        super().__init__(*args, **kwargs)
+
+    @property
+    def series(self) -> list[Series]:
+        """The curves and bars, in the order drawn."""
+        return [_series(*points) for points in self._points]
+
+    def plot(self, *args: Any, **kwargs: Any) -> list[Line2D]:
+        """Draw lines; keep x and y of one that is no guide."""
+        label = str(kwargs.get("label") or "_").removeprefix("_data: ")
+        if len(args) > 1 and (label == "_only" or not label.startswith("_")):
+            self._points.append((label, args[0], args[1]))
+        return super().plot(*args, **kwargs)
+
+    def errorbar(
+        self,
+        x: Any,
+        y: Any,
+        yerr: Any = None,
+        xerr: Any = None,
+        fmt: str = "",
+        *args: Any,
+        **kwargs: Any,
+    ) -> ErrorbarContainer:
+        """Draw points with error bars along x or else y, and keep both."""
+        if fmt != "none":  # else without points: matplotlib's own call for those of bars
+            error = (y, yerr) if xerr is None else (x, xerr)
+            self._points.append((kwargs.get("label"), x, y, *error))
+        return super().errorbar(x, y, yerr, xerr, fmt, *args, **kwargs)
+
+    def bar(self, x: Any, height: Any, *args: Any, **kwargs: Any) -> BarContainer:
+        """Draw bars upwards, and keep their middles and heights."""
+        if kwargs.get("orientation") != "horizontal":  # as which matplotlib draws those of `barh`
+            self._points.append((kwargs.get("label"), x, height, height, kwargs.get("yerr")))
+        return super().bar(x, height, *args, **kwargs)
+
+    def barh(self, y: Any, width: Any, *args: Any, **kwargs: Any) -> BarContainer:
+        """Draw bars to the right, and keep their lengths and middles."""
+        self._points.append((kwargs.get("label"), width, y, width, kwargs.get("xerr")))
+        return super().barh(y, width, *args, **kwargs)
+
+
+def _series(
+    label: object, x: ArrayLike, y: ArrayLike, values: ArrayLike = (), error: Any = None
+) -> Series:
+    """Return points; error: half the length of the bars about their `values`, or (2, points)."""
+    across, up = np.broadcast_arrays(*(np.array(v, dtype=float, ndmin=1) for v in (x, y)))
+    low, high = np.full((2, across.size), np.nan)
+    if error is not None:
+        below, above = np.broadcast_to(error, (2, across.size))
+        low, high = np.asarray(values, dtype=float) - below, np.asarray(values) + above
+    text = str(label or "")
+    return Series("" if text.startswith("_") else text, across, up, low, high)
+
+
+def name_places(ax: Axes, which: str, names: Sequence[str]) -> None:
+    """Put names in place of the numbers 0, 1, ... along an axis, "x" or "y"."""
+    ax.set(**{f"{which}ticks": range(len(names))})
+    getattr(ax, f"{which}axis").set_major_formatter(FixedFormatter(list(names)))
+    if isinstance(ax, Panel):
+        ax.names[which] = list(names)
+
 
 FORMATS = ("csv", "nc")
 _LABELS = ("panel", "curve", "x_label", "y_label")

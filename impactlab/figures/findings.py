@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from impactlab.figures import labels, responses_grid, scales, style
+from impactlab.figures.data import name_places
 from impactlab.figures.labels import Display, display
-from impactlab.figures.panel import name_places
 from impactlab.types import Floats
 from impactlab.verification.finding import Curve, CurvePanel, Outcome
 

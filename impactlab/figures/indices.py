@@ -14,9 +14,9 @@ from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
 from impactlab.figures import access, labels, measures, record, responses_grid, scales, style
+from impactlab.figures.data import name_places
 from impactlab.figures.labels import Display, display
 from impactlab.figures.measures import MORRIS, analysed, meanings
-from impactlab.figures.panel import name_places
 from impactlab.figures.record import Figure
 from impactlab.methods import verdict_name
 from impactlab.methods.record import Family, Measure

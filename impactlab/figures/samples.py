@@ -15,9 +15,9 @@ from impactlab.analysis.distribution import filtered
 from impactlab.analysis.regimes import of_runs
 from impactlab.figures import access, labels, record, responses_grid, scales, style
 from impactlab.figures.access import is_sample, usable, varied
+from impactlab.figures.data import name_places
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
-from impactlab.figures.panel import name_places
 from impactlab.figures.record import Figure
 from impactlab.types import Floats
 

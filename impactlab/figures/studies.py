@@ -23,9 +23,9 @@ from impactlab.figures import (
     scales,
     style,
 )
+from impactlab.figures.data import name_places
 from impactlab.figures.grids import parameter_axis
 from impactlab.figures.labels import Display, display
-from impactlab.figures.panel import name_places
 from impactlab.figures.record import LEAD
 from impactlab.methods.record import Family
 

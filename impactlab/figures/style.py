@@ -20,7 +20,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from impactlab.figures.panel import Panel
+from impactlab.figures.data import Panel
 
 SINGLE, DOUBLE = 89.0, 183.0  # widths of one and of two columns of a paper, mm
 PAGE = 230.0  # height of a page of a paper that leaves room for a caption, mm

@@ -11,8 +11,8 @@ import xarray as xr
 from impactlab.analysis.measurements import COVERAGE
 from impactlab.analysis.posterior import CONTRADICTED, FEWEST, NEGLIGIBLE, SILENT, STRONG
 from impactlab.figures import labels, measures, record
-from impactlab.figures.calibration import calibration, measured_words
 from impactlab.figures.draw import draw
+from impactlab.figures.questions import calibration, measured_words
 from impactlab.report.page import Cell, Entry, Row, Section, Table, write_listed
 from impactlab.solver.contact import CONTACT_LAWS, LawRecord
 from impactlab.study import CALIBRATION

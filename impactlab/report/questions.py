@@ -9,7 +9,7 @@ import xarray as xr
 
 from impactlab.figures import labels
 from impactlab.figures.draw import Drawing, draw
-from impactlab.figures.rare_event import FIGURES
+from impactlab.figures.questions import FIGURES
 from impactlab.files import read_netcdf
 from impactlab.report.page import Cell, Row, Section, Table, write_listed
 from impactlab.study import MULTIFIDELITY, RARE_EVENT, SIZING

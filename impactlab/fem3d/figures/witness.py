@@ -15,8 +15,8 @@ from impactlab.fem3d.wing import MODEL, SIZES, SOLID
 from impactlab.figures import access, labels, record, scales, style
 from impactlab.figures.access import known, usable
 from impactlab.figures.convergence import CAPTION, Refined, draw, enough
+from impactlab.figures.data import name_places
 from impactlab.figures.labels import display
-from impactlab.figures.panel import name_places
 from impactlab.types import Floats
 
 AXES = {"nodes": np.argmax, "element_size": np.argmin, "elements_per_radius": np.argmax}

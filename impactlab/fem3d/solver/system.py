@@ -14,13 +14,12 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from impactlab.fem3d.solver.compiler import Array, compiled, inlined
-from impactlab.fem3d.solver.damping import damping_of, sum_rows
 from impactlab.fem3d.solver.elements import FULL_ROWS, ROWS, add_forces, blocks_of
 from impactlab.fem3d.solver.hexahedron import SCRATCH, Vector, W, cross, dot
 from impactlab.fem3d.solver.impulses import RULE, close_gaps
 from impactlab.fem3d.solver.material import PAST_ROWS, STRESS_ROWS, Metal, Rate
 from impactlab.fem3d.solver.mesh import BEAM, NEIGHBOURS, SPHERE, Mesh, nodal_masses
-from impactlab.fem3d.solver.springs import add_spring_forces, springs_of
+from impactlab.fem3d.solver.springs import add_spring_forces, damping_of, springs_of, sum_rows
 from impactlab.model.impact import Impact
 from impactlab.model.material import Material
 from impactlab.types import Floats

@@ -1,7 +1,7 @@
 import numpy as np
 
 from impactlab.figures import data, style
-from impactlab.figures.panel import name_places
+from impactlab.figures.data import name_places
 
 
 def test_bars_are_kept_once_with_their_errors_and_the_names_of_their_places():

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 from made_solid import beam_models, solid
 
 from impactlab.fem3d.comparison import compared
-from impactlab.fem3d.page import write_comparison
 from impactlab.fem3d.plan import case_of
+from impactlab.fem3d.report import write_comparison
 from impactlab.report.results import write_index
 
 

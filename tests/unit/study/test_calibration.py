@@ -8,8 +8,8 @@ import pytest
 from command_line import called
 
 import impactlab as il
-from impactlab.figures.calibration import calibration
 from impactlab.figures.data import drawn
+from impactlab.figures.questions import calibration
 from impactlab.files import read_netcdf
 from impactlab.report.calibration import sentences
 from impactlab.report.results import write_index
