@@ -22,7 +22,6 @@ from impactlab.figures import (
     indices,
     labels,
     measures,
-    responses_grid,
     samples,
     single_runs,
     style,
@@ -99,7 +98,7 @@ def response(
     _require("response", name, [key for key in runs.data_vars if key not in ("status", "remarks")])
     along, ax = runs[_across(runs, name, x, hue)], _current(ax)
     if access.is_sample(runs):
-        values, label = responses_grid.shown(runs, name)
+        values, label = style.in_display_units(runs, name)
         middles = labels.display(runs[name])(of_runs(runs, name))
         samples.scatter_runs(ax, along, values.values, middles)
         ax.set(xlabel=samples.axis_label(along), ylabel=label)

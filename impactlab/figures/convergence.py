@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import access, curves, labels, record, responses_grid, scales, style
+from impactlab.figures import access, curves, labels, record, scales, style
 from impactlab.figures.access import known, responses, usable
 from impactlab.figures.curves import Plan, Selection, plan
 from impactlab.figures.labels import display
@@ -108,9 +108,9 @@ def draw(
 ) -> Figure:
     """Draw a panel per response over the spacing of the runs, in the unit of the label."""
     selected, needs = axis.plan(runs), needed(runs, analysis)
-    figure, axes = responses_grid.panels(axis.names(runs), height=44)
+    figure, axes = style.response_panels(axis.names(runs), height=44)
     for name, ax in axes.items():
-        responses_grid.write(ax, needs.verdict(axis.name, name) if needs else None)
+        style.write_verdict(ax, needs.verdict(axis.name, name) if needs else None)
         verdicts = access.occurring(_of(analysis, f"{axis.name}_verdict", name))
         if any(verdict.flag == "not_convergent_by_design" for verdict in verdicts):
             _draw_values(ax, runs, name, spacing, selected)
@@ -121,7 +121,7 @@ def draw(
             _draw_trend(ax, spacing, errors, partial(_read, analysis, axis.name, name, curve.where))
         if not ax.lines:
             enough = bool((difference.count(axis.dim) > 1).any())
-            responses_grid.empty(ax, "same on every grid" if enough else "too few values")
+            style.empty(ax, "same on every grid" if enough else "too few values")
             continue
         ends = np.array([spacing.min(), spacing.max()])
         guide = 1.6 * np.nanmax(scales.drawn(ax, "y")) * (ends / ends[1]) ** 2  # above the curves
@@ -151,7 +151,7 @@ def _orders(analysis: xr.Dataset, axis: str, name: str, selected: Plan) -> str:
 
 def _draw_values(ax: Axes, runs: xr.Dataset, name: str, spacing: Floats, selected: Plan) -> None:
     """Draw a response that has no limit to differ from."""
-    values, label = responses_grid.shown(runs, name)
+    values, label = style.in_display_units(runs, name)
     for curve in selected.curves:
         y = values.isel(curve.where).values
         if (y > 0).any():
@@ -296,15 +296,15 @@ def points_convergence(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a panel per response, a curve per rule (and velocity)."""
     selected, points = _POINTS.plan(runs), analysis["points"].values
     needs = needed(runs, analysis)
-    figure, axes = responses_grid.panels(_POINTS.names(runs), height=40)
+    figure, axes = style.response_panels(_POINTS.names(runs), height=40)
     for name, ax in axes.items():
-        responses_grid.write(ax, needs.verdict("points", name) if needs else None)
+        style.write_verdict(ax, needs.verdict("points", name) if needs else None)
         error = abs(analysis["points_error"].sel(response=name)).transpose("points", ...)
         for curve, values in _above_round_off(error, selected):
             curves.add(ax, points, values, curve)
         if not ax.lines:
             enough = bool((error.count("points") > 1).any())
-            responses_grid.empty(ax, "same for every number" if enough else "too few values")
+            style.empty(ax, "same for every number" if enough else "too few values")
             continue
         scales.logarithmic(ax, "x", points)
         scales.at(ax, "x", points)
@@ -349,14 +349,14 @@ def convergence_cost(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     for name, words in _WORDS.items():
         given[name] = xr.apply_ufunc(np.vectorize(words.index), given[name])
     work = node_steps(dict(zip(given, xr.broadcast(*given.values()), strict=True)))
-    figure, axes = responses_grid.panels(_COST.names(runs), height=40)
+    figure, axes = style.response_panels(_COST.names(runs), height=40)
     for name, ax in axes.items():
         difference = _relative_difference(runs, analysis, _COST, name)
         for curve, errors in _above_round_off(difference, selected):
             x = work.isel(curve.where, missing_dims="ignore").values
             curves.add(ax, x, errors, curve)
         if not ax.lines:
-            responses_grid.empty(ax, "no error to show")
+            style.empty(ax, "no error to show")
             continue
         powers = np.log10(scales.drawn(ax, "x"))
         decades = 10.0 ** np.arange(np.floor(powers.min()), np.ceil(powers.max()) + 1)

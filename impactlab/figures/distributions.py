@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
 from impactlab.analysis.distribution import cumulative, drawn_outputs, limits, significance
-from impactlab.figures import access, labels, record, responses_grid, scales, style
+from impactlab.figures import access, labels, record, scales, style
 from impactlab.figures.access import is_sample, responses, usable
 from impactlab.figures.labels import display
 from impactlab.figures.measures import analysed
@@ -38,9 +38,9 @@ _MOST = 300  # largest number of steps drawn of a curve
 )
 def response_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response, of the runs that have it."""
-    figure, axes = responses_grid.panels(responses(runs), height=40)
+    figure, axes = style.response_panels(responses(runs), height=40)
     for name, ax in axes.items():
-        values, label = responses_grid.shown(runs, name)
+        values, label = style.in_display_units(runs, name)
         ax.set_title(label, loc="left")
         percentiles = None
         if analysed(runs, analysis, "quantile") and access.known(analysis, name):
@@ -53,7 +53,7 @@ def response_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
 def _distribution(ax: Axes, values: Floats, percentiles: Floats | None) -> None:
     if values.size == 0 or np.ptp(values) <= ROUND_OFF * np.abs(values).max():
         text = f"constant: {labels.number(float(values[0]))}" if values.size else "no finite values"
-        responses_grid.empty(ax, text)
+        style.empty(ax, text)
         return
     distinct, counts = np.unique(values, return_counts=True)
     if distinct.size <= _FEW:
@@ -125,14 +125,14 @@ def _cumulative_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, 
 def cumulative_distributions(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response: the curve, its band, and the limit if the study has one."""
     names, thresholds = analysed(runs, analysis), limits(runs)
-    figure, axes = responses_grid.panels(names, height=40)
+    figure, axes = style.response_panels(names, height=40)
     level = float(analysis.attrs.get("confidence", 0.95))
     for name, ax in axes.items():
         unit = display(runs[name])
         ax.set_title(labels.axis(labels.response(name), unit.symbol), loc="left")
         values, share, low, high = cumulative(drawn_outputs(runs, name), level)
         if not values.size:
-            responses_grid.empty(ax)
+            style.empty(ax)
             continue
         steps = scales.spread(values.size, _MOST)
         x = unit(values[steps])
@@ -204,7 +204,7 @@ def _two_curves(
     """Draw the cumulative distributions of a parameter (draws,) above the limit and below it."""
     x, above, below = places(column), outputs > limit, outputs <= limit
     if not above.any() or not below.any():
-        responses_grid.empty(ax, "all draws on one side" if (above | below).any() else "no answer")
+        style.empty(ax, "all draws on one side" if (above | below).any() else "no answer")
         return
     kinds = {"above the limit": (above, style.COLOURS[1]), "others": (below, style.COLOURS[0])}
     for label, (which, colour) in kinds.items():

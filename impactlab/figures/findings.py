@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import labels, responses_grid, scales, style
+from impactlab.figures import labels, scales, style
 from impactlab.figures.data import name_places
 from impactlab.figures.labels import Display, display
 from impactlab.types import Floats
@@ -177,7 +177,7 @@ def _draw_panel(
             ax.plot(x, y, label=label, **(looks[label] | _points(curve, panel.curves)))
     if not ax.lines:
         text = "no finite values above zero" if panel.log else "no finite values"
-        responses_grid.empty(ax, text)
+        style.empty(ax, text)
     elif panel.log:
         scales.logarithmic(ax, "x", scales.drawn(ax, "x"))
         scales.logarithmic(ax, "y", scales.drawn(ax, "y"))

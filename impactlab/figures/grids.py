@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from impactlab.figures import access, curves, labels, record, responses_grid, scales, style
+from impactlab.figures import access, curves, labels, record, scales, style
 from impactlab.figures.access import physical, responses, usable
 from impactlab.figures.curves import Plan, plan
 from impactlab.figures.labels import Display, display
@@ -173,14 +173,14 @@ def _law_forces(ax: Axes, runs: xr.Dataset, selected: Plan) -> None:
         scales.linear(ax, "xy")
         ax.set(xlim=(0.0, None), ylim=(0.0, None))
     else:
-        responses_grid.empty(ax)
+        style.empty(ax)
 
 
 def _law_responses(
     ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, name: str, selected: Plan
 ) -> None:
     """Draw a response against the velocity, with open markers beyond the range of a law."""
-    values, label = responses_grid.shown(runs, name)
+    values, label = style.in_display_units(runs, name)
     speed = runs["velocity"].values
     for curve in selected.curves:
         y = values.isel(curve.where).values
@@ -192,7 +192,7 @@ def _law_responses(
     curves.add_measured(ax, analysis, name, "velocity", display(runs["velocity"]), unit)
     ax.set(xlabel=labels.axis("velocity", "m/s"), ylabel=label)
     if not ax.lines:
-        responses_grid.empty(ax)
+        style.empty(ax)
         return
     scales.fit(ax, "x", speed)
     # dents span decades, and those of zero (Hertz) or below (some laws, just beyond yield) do not
@@ -225,7 +225,7 @@ def _plan_effects(runs: xr.Dataset) -> Plan:
 def parameter_effects(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a panel per response: colours by the second parameter, line styles by the third."""
     along, selected = runs[_along(runs)], _plan_effects(runs)
-    figure, axes = responses_grid.panels(responses(runs), height=38)
+    figure, axes = style.response_panels(responses(runs), height=38)
     for name, ax in axes.items():
         ax.set_title(response_curves(ax, runs, analysis, name, along, selected), loc="left")
     return selected.finish(figure, parameter_axis(along))
@@ -242,7 +242,7 @@ def response_curves(
     scales.fit(ax, "x", display(along)(along))
     scales.fit(ax, "y", scales.drawn(ax, "y"))
     if not ax.lines:
-        responses_grid.empty(ax)
+        style.empty(ax)
     return labels.axis(labels.response(name), unit.symbol)
 
 
@@ -301,7 +301,7 @@ def _shear_curve(
 def _scale_changes(ax: Axes) -> None:
     """Scale the axes to the curves, then draw the thresholds."""
     if not ax.lines:
-        responses_grid.empty(ax)
+        style.empty(ax)
         return
     scales.logarithmic(ax, "x", scales.drawn(ax, "x"))
     changes = scales.drawn(ax, "y")

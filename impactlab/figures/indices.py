@@ -13,7 +13,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
-from impactlab.figures import access, labels, measures, record, responses_grid, scales, style
+from impactlab.figures import access, labels, measures, record, scales, style
 from impactlab.figures.data import name_places
 from impactlab.figures.labels import Display, display
 from impactlab.figures.measures import MORRIS, analysed, meanings
@@ -54,7 +54,7 @@ def index_bars(family: Family) -> Figure:
         largest = ranked.max([dim for dim in ranked.dims if dim != "parameter"]).fillna(-1.0)
         analysis = analysis.isel(parameter=np.argsort(-largest.values, kind="stable"))
         height = 10 + max(5.2, 2.4 * len(shown)) * analysis.sizes["parameter"]
-        figure, axes = responses_grid.panels(analysed(runs, analysis), height, beneath=8)
+        figure, axes = style.response_panels(analysed(runs, analysis), height, beneath=8)
         for response, ax in axes.items():
             bars(ax, analysis, family, response)
             ax.tick_params(axis="y", labelleft=style.starts_row(ax))
@@ -112,7 +112,7 @@ def bars(ax: Axes, analysis: xr.Dataset, family: Family, response: str) -> None:
     ax.axvline(0.0, color="0.15", linewidth=0.6)
     verdict = access.verdict(analysis, judged, response)
     if np.isfinite(analysis[shown[0].name].sel(response=response)).any():
-        responses_grid.warn(ax, verdict)
+        style.warn(ax, verdict)
     else:
         style.remark(ax, f"undefined:\n{verdict.words if verdict else 'no reason is given'}")
     name_places(ax, "y", listed)
@@ -156,7 +156,7 @@ def index_convergence(measure: Measure) -> Figure:
     )
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per response, a line with its band per parameter."""
-        figure, axes = responses_grid.panels(analysed(runs, analysis), height=44)
+        figure, axes = style.response_panels(analysed(runs, analysis), height=44)
         samples = analysis[_SAMPLES].values
         for name, ax in axes.items():
             indices = analysis.sel(response=name)
@@ -172,7 +172,7 @@ def index_convergence(measure: Measure) -> Figure:
             low, high = ax.get_ylim()
             ax.set_ylim(max(low, _ENDS[0]), min(high, _ENDS[1]))
             scales.linear(ax, "y")
-            responses_grid.warn(ax, access.verdict(analysis, access.VERDICT, name))
+            style.warn(ax, access.verdict(analysis, access.VERDICT, name))
         return style.finish(figure, "Base samples (–)", "Share of the variance (–)")
 
     return plot
@@ -204,14 +204,14 @@ def _pair_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, str, s
 def sobol_second_order(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response, a cell per pair, all on one colour scale."""
     significant, listed = _significant_pairs(runs, analysis), meanings(analysis)
-    figure, axes = responses_grid.panels(list(significant), 7 + 4.6 * len(listed), beneath=14)
+    figure, axes = style.response_panels(list(significant), 7 + 4.6 * len(listed), beneath=14)
     values = {name: pairs(analysis[_PAIRS].sel(response=name)) for name in significant}
     # no weaker than _WEAK, to keep noise pale
     tops = [np.max(values[n], initial=_WEAK, where=where) for n, where in significant.items()]
     colours = Normalize(0.0, max(map(float, tops)))
     for name, ax in axes.items():
         _map(ax, values[name][:-1, 1:], significant[name][:-1, 1:], colours)
-        responses_grid.warn(ax, access.verdict(analysis, access.VERDICT, name))
+        style.warn(ax, access.verdict(analysis, access.VERDICT, name))
         _name_pairs(ax, listed)
     thin = 20 * min(len(axes), 2)
     scale = ScalarMappable(colours, _CELLS)
@@ -292,7 +292,7 @@ def _name_pairs(ax: Axes, listed: list[str]) -> None:
 )
 def morris_plane(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response, a marker per parameter."""
-    figure, axes = responses_grid.panels(analysed(runs, analysis), height=48)
+    figure, axes = style.response_panels(analysed(runs, analysis), height=48)
     for name, ax in axes.items():
         plane(ax, runs, analysis, name)
     return style.finish(figure)
@@ -310,9 +310,9 @@ def plane(ax: Axes, runs: xr.Dataset, analysis: xr.Dataset, response: str) -> No
             xerr = margin[number] if np.isfinite(margin[number]) else None
             look = style.distinct(number) | {"linestyle": "", "elinewidth": 0.8}
             ax.errorbar(x[number], y[number], xerr=xerr, label=parameter, **look)
-    responses_grid.warn(ax, access.verdict(analysis, access.VERDICT, response))
+    style.warn(ax, access.verdict(analysis, access.VERDICT, response))
     if not ax.lines:
-        responses_grid.empty(ax)
+        style.empty(ax)
         return
     ax.set(xlabel=labels.axis("mean µ*", unit.symbol), ylabel=labels.axis("spread σ", unit.symbol))
     right, top = float(np.nanmax(x + np.nan_to_num(margin, posinf=0.0))), np.nanmax(y)
@@ -375,7 +375,7 @@ def _at_times(ax: Axes, history: xr.Dataset, order: str, time: Display) -> None:
     ax.set_ylim(max(min(low, 0.0), _ENDS[0]), min(max(high, 1.0), _ENDS[1]))
     ax.set_ylabel("Share (–)")
     scales.linear(ax, "xy")
-    responses_grid.warn(ax, access.read(history[measures.HISTORY_VERDICT]))
+    style.warn(ax, access.read(history[measures.HISTORY_VERDICT]))
 
 
 def _mean(ax: Axes, history: xr.Dataset, time: Display) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from impactlab.analysis.distribution import filtered
 from impactlab.analysis.regimes import of_runs
-from impactlab.figures import access, labels, record, responses_grid, scales, style
+from impactlab.figures import access, labels, record, scales, style
 from impactlab.figures.access import is_sample, usable, varied
 from impactlab.figures.data import name_places
 from impactlab.figures.labels import display
@@ -69,7 +69,7 @@ def scatter(response: str) -> Figure:
     )
     def plot(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
         """Draw a panel per parameter; points are a bitmap, which keeps the vector file small."""
-        values, label = responses_grid.shown(runs, response)
+        values, label = style.in_display_units(runs, response)
         middles = display(runs[response])(of_runs(runs, response))
         return along_parameters(
             runs, label, 42, lambda ax, column: scatter_runs(ax, column, values.values, middles)
@@ -187,12 +187,12 @@ def _validation_sentences(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, 
 )
 def surrogate_validation(runs: xr.Dataset, analysis: xr.Dataset) -> Drawing:
     """Draw a panel per response, in the same unit on both axes."""
-    figure, axes = responses_grid.panels(analysed(runs, analysis), height=46)
+    figure, axes = style.response_panels(analysed(runs, analysis), height=46)
     for name, ax in axes.items():
         _held_out(ax, runs, analysis, name)
         verdict = access.verdict(analysis, "surrogate_verdict", name)
         if not ax.lines:
-            responses_grid.empty(ax, f"no surrogate:\n{verdict.words if verdict else 'unknown'}")
+            style.empty(ax, f"no surrogate:\n{verdict.words if verdict else 'unknown'}")
             continue
         q2 = float(analysis["surrogate_q2"].sel(response=name))
         text = "Q² > 0.9999" if q2 > _PERFECT else f"Q² = {labels.number(q2)}"

@@ -19,7 +19,6 @@ from impactlab.figures import (
     labels,
     measures,
     record,
-    responses_grid,
     scales,
     style,
 )
@@ -165,7 +164,7 @@ def _indices(studies: Sequence[StudyResults], family: Family, names: Sequence[st
     measure = family.ranked_by(studies[0].analysis).name
     parameters, meanings = rows_of(studies, measure, names)
     height = 12 + (1.4 + 2.3 * len(studies)) * len(parameters)
-    figure, axes = responses_grid.panels(names, height, beneath=8)
+    figure, axes = style.response_panels(names, height, beneath=8)
     for name, ax in axes.items():
         unit = Display(1.0, "") if family.shares else common_display(studies, name)
         for number, study in enumerate(studies):
@@ -239,7 +238,7 @@ def _colour(number: int) -> dict[str, Any]:
 
 def _distributions(studies: Sequence[StudyResults], names: Sequence[str]) -> Drawing:
     """Draw a panel per response: the cumulative curve of each study, with its band."""
-    figure, axes = responses_grid.panels(names, height=42)
+    figure, axes = style.response_panels(names, height=42)
     for name, ax in axes.items():
         unit, drawn = common_display(studies, name), []
         ax.set_title(labels.axis(labels.response(name), unit.symbol), loc="left")
@@ -256,7 +255,7 @@ def _distributions(studies: Sequence[StudyResults], names: Sequence[str]) -> Dra
             )
             drawn.append(x)
         if not drawn:
-            responses_grid.empty(ax)
+            style.empty(ax)
             continue
         ax.set_ylim(0.0, 1.0)
         scales.linear(ax, "y", 4)
@@ -267,7 +266,7 @@ def _distributions(studies: Sequence[StudyResults], names: Sequence[str]) -> Dra
 
 def _curves(studies: Sequence[StudyResults], along: str, names: Sequence[str]) -> Drawing:
     """Draw a panel per response over a parameter: a colour per study, a line style per curve."""
-    figure, axes = responses_grid.panels(names, height=42)
+    figure, axes = style.response_panels(names, height=42)
     across = display(studies[0].runs[along])
     for name, ax in axes.items():
         unit, places = common_display(studies, name), []
@@ -289,5 +288,5 @@ def _curves(studies: Sequence[StudyResults], along: str, names: Sequence[str]) -
         scales.fit(ax, "x", np.concatenate(places))
         scales.fit(ax, "y", scales.drawn(ax, "y"))
         if not ax.lines:
-            responses_grid.empty(ax)
+            style.empty(ax)
     return style.finish(figure, parameter_axis(studies[0].runs[along]))

@@ -15,12 +15,16 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib.style
+import xarray as xr
 from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from impactlab.figures import access, labels
+from impactlab.figures.access import usable
 from impactlab.figures.data import Panel
+from impactlab.figures.labels import display
 
 SINGLE, DOUBLE = 89.0, 183.0  # widths of one and of two columns of a paper, mm
 PAGE = 230.0  # height of a page of a paper that leaves room for a caption, mm
@@ -274,12 +278,12 @@ def finish(
     return figure
 
 
-def _columns(width: float, labels: list[str]) -> int:
+def _columns(width: float, entries: list[str]) -> int:
     """Return the columns, evenly filled, that fit a width in mm; letters take 1.45 mm at 7 pt."""
-    longest = max((len(label) for label in labels), default=1)
+    longest = max(map(len, entries), default=1)
     fit = max(1, int(width / (1.45 * longest + 15.5)))
-    rows = math.ceil(len(labels) / fit)
-    return max(1, math.ceil(len(labels) / max(rows, 1)))
+    rows = math.ceil(len(entries) / fit)
+    return max(1, math.ceil(len(entries) / max(rows, 1)))
 
 
 def distinct(number: int) -> dict[str, Any]:
@@ -310,3 +314,51 @@ def remark(axes: Axes, text: str = "no finite values") -> None:
     """Write words in place of data, in the middle of empty axes."""
     axes.grid(visible=False)
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=MUTED)
+
+
+_COLUMNS, _SQUARE = 3, 4  # columns of panels, but for the number of panels that makes a square
+_ALONE_HEIGHT = 50.0
+"""Least height of a panel that stands alone, mm."""
+
+
+def response_panels(
+    names: Sequence[str], height: float, beneath: float = 0.0
+) -> tuple[Figure, dict[str, Axes]]:
+    """Return a figure with a panel per response, under its name.
+
+    height: of a row, mm; beneath: of what stands below all rows, mm.
+    """
+    height = max(height, _ALONE_HEIGHT) if len(names) == 1 else height
+    titles = [labels.title(name) for name in names]
+    columns = 2 if len(names) == _SQUARE else _COLUMNS
+    figure, axes = titled_panels(titles, columns=columns, height=height)
+    grow(figure, beneath)
+    return figure, dict(zip(names, axes, strict=True))
+
+
+def in_display_units(runs: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
+    """Return a response's usable values in display units, with its name and unit for a label."""
+    values = usable(runs, name)
+    unit = display(values)
+    return values * unit.scale, labels.axis(labels.response(name), unit.symbol)
+
+
+def warn(ax: Axes, verdict: access.StatedVerdict | None) -> None:
+    """Write a verdict under the panel's title if it is a warning."""
+    if verdict and not verdict.sound:
+        write_verdict(ax, verdict)
+
+
+def write_verdict(ax: Axes, verdict: access.StatedVerdict | None) -> None:
+    """Write a verdict, if there is one, under the panel's title, bold where it is a warning."""
+    if verdict is None:
+        return
+    ax.set_title(ax.get_title(loc="left"), loc="left", pad=12)
+    place, warning = (0.0, 1.0), not verdict.sound
+    note(ax, verdict.words, place, (0, 3), warning=warning, xycoords="axes fraction")
+
+
+def empty(ax: Axes, text: str = "no finite values") -> None:
+    """Write words in place of curves, and leave out the ticks."""
+    remark(ax, text)
+    ax.set(xticks=[], yticks=[])

@@ -20,7 +20,6 @@ from collections.abc import Mapping
 
 import numpy as np
 import numpy.typing as npt
-import scipy  # its stats are loaded when first used
 
 from impactlab.methods.hypercube import Hypercube
 from impactlab.methods.record import (
@@ -95,9 +94,8 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
     margins[:dummy] = np.hypot(margins[:dummy], margins[dummy]) + biases
     rows = slice(dummy + 1)
     first, errors = first_orders(inputs[:, rows], outputs)
-    quantile = float(scipy.stats.norm.ppf(0.5 + sample.confidence / 2))
     return apart_from_dummy("delta", values[rows], margins[rows]) | apart_from_dummy(
-        "delta_first_order", first, quantile * errors
+        "delta_first_order", first, sample.quantile * errors
     )
 
 

@@ -15,7 +15,6 @@ noise. Target indices (Marrel and Chabridon 2021) are those of whether the limit
 from collections.abc import Mapping
 
 import numpy as np
-import scipy  # its stats are loaded when first used
 
 from impactlab.methods.hypercube import Hypercube
 from impactlab.methods.record import (
@@ -78,8 +77,7 @@ def _named(name: str, sample: Sample, kernel: Floats, response: str) -> dict[str
         column = sample.column(parameter)[:MOST]
         other = _alike(column) if parameter in sample.words else _gaussian(column)
         values[number], error, null = r_squared(other, kernel, shuffles)
-        quantile = float(scipy.stats.norm.ppf(0.5 + sample.confidence / 2))
-        margins[number] = quantile * np.hypot(SAFETY * error, null.std())
+        margins[number] = sample.quantile * np.hypot(SAFETY * error, null.std())
         p_values[number] = (1 + np.count_nonzero(null >= values[number])) / (1 + len(null))
     return {name: values, f"{name}_interval": margins, f"{name}_p_value": p_values}
 

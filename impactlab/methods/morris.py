@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Annotated, Self
 
 import numpy as np
-import scipy  # its stats are loaded when first used
 from pydantic import Field, model_validator
 
 from impactlab.methods.record import (
@@ -96,12 +95,11 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
 def _half_widths(effects: Floats, sample: Sample, response: str) -> Floats:
     """Return the bootstrap half-widths of each parameter's mean absolute effect."""
     (rng,) = sample.rng(response).spawn(1)
-    quantile = scipy.stats.norm.ppf(0.5 + sample.confidence / 2)
     trajectories = effects.shape[1]
     widths = np.empty(len(effects))
     for parameter, sizes in enumerate(np.abs(effects)):
         resamples = sizes[rng.integers(trajectories, size=(sample.resamples, trajectories))]
-        widths[parameter] = quantile * resamples.mean(axis=1).std(ddof=1)
+        widths[parameter] = sample.quantile * resamples.mean(axis=1).std(ddof=1)
     return widths
 
 

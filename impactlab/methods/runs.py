@@ -204,10 +204,14 @@ class Sample:
         key = tuple("\0".join(purpose).encode())
         return np.random.default_rng(np.random.SeedSequence(self.number("seed"), spawn_key=key))
 
+    @property
+    def quantile(self) -> float:
+        """Half-width of an interval over the standard error of a normal estimate."""
+        return float(scipy.stats.norm.ppf(0.5 + self.confidence / 2))
+
     def half_width(self, replicates: Floats) -> Floats:
         """Return half-widths of intervals from replicates (resamples, ...), NaN where one is."""
-        quantile = float(scipy.stats.norm.ppf(0.5 + self.confidence / 2))
-        return np.asarray(quantile * replicates.std(axis=0, ddof=1))
+        return np.asarray(self.quantile * replicates.std(axis=0, ddof=1))
 
 
 def dummy_column(sample: Sample) -> Floats:

@@ -68,8 +68,7 @@ def _estimate(outputs: Floats, sample: Sample, response: str) -> dict[str, Float
             for rows in (order[::2], order[1::2])
         ]
     change = np.abs(np.mean(halves, axis=0) - effects)
-    quantile = float(scipy.stats.norm.ppf(0.5 + sample.confidence / 2))
-    return {"shapley": effects, "shapley_interval": quantile * errors + SAFETY * change}
+    return {"shapley": effects, "shapley_interval": sample.quantile * errors + SAFETY * change}
 
 
 def shapley_effects(inputs: Floats, outputs: Floats, categorical: Mask) -> tuple[Floats, Floats]:

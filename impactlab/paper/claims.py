@@ -26,21 +26,17 @@ from impactlab.report.page import Cell, Row, Table, pictures, provenance, write_
 log = logging.getLogger(__name__)
 
 _FIXED = (
-    "velocity",
-    "contact",
-    "beam_model",
-    "load",
-    "sphere_radius",
-    "beam_span",
-    "beam_width",
-    "beam_depth",
-    "beam_yield_stress",
-    "nodes",
-    "points",
-    "rule",
-    "scheme",
-    "courant",
-    "duration",
+    *("velocity", "contact", "beam_model", "load", "sphere_radius", "beam_span", "beam_width"),
+    *(
+        "beam_depth",
+        "beam_yield_stress",
+        "nodes",
+        "points",
+        "rule",
+        "scheme",
+        "courant",
+        "duration",
+    ),
 )
 """Parameters that captions list, in this order; the paper's tables hold the rest of its case."""
 MIXED = "depends on the reading"  # what is said of a statement whose cases differ

@@ -109,7 +109,7 @@ def checked_patch(impact: Impact, element_size: float, patch: float | None) -> f
 def damped_step(step: float, beta: float) -> float:
     """Return a step (s) as far from instability as `step` is without damping of the stiffness.
 
-    beta: in s, see damping.py.
+    beta: in s, see springs.py.
     """
     return step if beta == 0.0 else step**2 / (beta + math.hypot(beta, step))
 

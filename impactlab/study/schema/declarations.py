@@ -151,16 +151,23 @@ class Store(FileSection):
     samples: Annotated[Whole, Field(ge=2, le=100_000)] = 1000
 
 
-class Analysis(FileSection):
-    """Settings of sensitivity indices, and of all intervals.
+class Intervals(FileSection):
+    """Settings of intervals: their confidence level, and the number of bootstrap resamples.
 
-    confidence: level of the intervals. resamples: number of bootstrap resamples, which Sobol
-    indices do without. failed_runs: what happens to a response that is missing in some runs: no
-    index is given ("fail"), or a surrogate fitted to the other runs supplies its values ("impute").
+    Sobol indices do without resamples.
     """
 
     confidence: Annotated[Number, Field(ge=0.5, le=0.999)] = 0.95
     resamples: Annotated[Whole, Field(ge=10, le=100_000)] = 200
+
+
+class Analysis(Intervals):
+    """Settings of sensitivity indices.
+
+    failed_runs: what happens to a response that is missing in some runs: no index is given
+    ("fail"), or a surrogate fitted to the other runs supplies its values ("impute").
+    """
+
     failed_runs: Annotated[str, one_of("policy", ("fail", "impute"))] = "fail"
 
 

@@ -24,14 +24,13 @@ from impactlab.methods.distributions import CHOICE, DISTRIBUTIONS, ENTRIES
 from impactlab.methods.entries import Distribution, Entry
 from impactlab.model.parameters import Parameter
 from impactlab.model.quantities import si, si_units
-from impactlab.study.schema.declarations import Declared
+from impactlab.study.schema.declarations import Declared, Intervals
 from impactlab.study.schema.yaml_file import Source
 from impactlab.study.table import GIVEN_DATA, runs_of_table
 from impactlab.validation.errors import Problem, StudyError, unknown
 from impactlab.validation.fields import (
     FileSection,
     Heading,
-    Number,
     Text,
     Whole,
     name_at,
@@ -91,13 +90,6 @@ def _read_input(data: Any, info: ValidationInfo) -> InputColumn:
     return InputColumn(column=column.column, units=column.units, distribution=entry)
 
 
-class TableAnalysis(FileSection):
-    """Settings of the intervals: confidence level, and number of bootstrap resamples."""
-
-    confidence: Annotated[Number, Field(ge=0.5, le=0.999)] = 0.95
-    resamples: Annotated[Whole, Field(ge=10, le=100_000)] = 200
-
-
 _Input = Annotated[InputColumn, PlainValidator(_read_input)]
 _Output = Annotated[Column, BeforeValidator(_stated)]
 _SOME = Field(min_length=1)
@@ -111,7 +103,7 @@ class TableFile(Heading):
     outputs: Annotated[dict[StrictStr, _Output], _SOME]
     indices: Annotated[tuple[str, ...], names("index", GIVEN_DATA)] = ("delta",)
     seed: Annotated[Whole, Field(ge=0, le=2**32 - 1)] = 1
-    analysis: TableAnalysis = Field(default_factory=TableAnalysis)
+    analysis: Intervals = Field(default_factory=Intervals)
 
 
 @dataclass(frozen=True)
@@ -127,7 +119,7 @@ class TableStudy(Declared):
     outputs: Mapping[str, Column]
     indices: tuple[str, ...]
     seed: int
-    analysis: TableAnalysis
+    analysis: Intervals
 
     @property
     def csv(self) -> Path:
