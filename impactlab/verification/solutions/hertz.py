@@ -135,13 +135,14 @@ class LumpedSolution:
     """Histories are at any times through `at`; displacements and forces are positive downwards.
 
     contacts: start and end of each in s, shape (contacts, 2), NaN where the duration ends first.
-    peak_force in N: the largest, of all contacts. duration in s.
+    peak_force in N at time_of_peak_force in s: the largest, of all contacts. duration in s.
     """
 
     impact: Impact
     duration: float
     contacts: Floats
     peak_force: float
+    time_of_peak_force: float
     _path: Callable[[Floats], Floats]
 
     @property
@@ -157,12 +158,14 @@ class LumpedSolution:
         seconds = np.atleast_1d(np.asarray(time, dtype=np.float64))
         if not np.all((seconds >= 0) & (seconds <= self.duration)):
             raise ValueError(f"time: every value must be within 0 to {self.duration!r} s")
-        w_s, w, *_ = self._path(seconds)
+        w_s, w, v_s, v = self._path(seconds)
         histories: dict[str, Floats] = {
             "contact_force": np.asarray(_force(w_s - w, contact_stiffness(self.impact))),
             "midspan_deflection": w,
             "indentation": w_s - w,
             "sphere_displacement": w_s,
+            "sphere_velocity": v_s,
+            "midspan_velocity": v,
         }
         return histories[history]
 
@@ -205,12 +208,14 @@ def solve(
         events=(touch_and_parting, turn),
         dense_output=True,
     )
-    touches = solution.t_events[0]
+    touches, turns = solution.t_events
     later = touches[touches > 0.0]  # the first touch is at 0
     ends = np.concatenate(([0.0], later, [np.nan] * ((later.size + 1) % 2)))
     depths = [state[0] - state[1] for state in (*solution.y_events[1], solution.y[:, -1])]
-    contacts, peak = np.asarray(ends.reshape(-1, 2)), float(_force(max(depths), k))
-    return LumpedSolution(impact, duration, contacts, peak, solution.sol)
+    deepest = int(np.argmax(depths))
+    contacts = np.asarray(ends.reshape(-1, 2))
+    peak, time = float(_force(depths[deepest], k)), float([*turns, duration][deepest])
+    return LumpedSolution(impact, duration, contacts, peak, time, solution.sol)
 
 
 def _force(delta: Any, k: float) -> Any:

@@ -44,6 +44,7 @@ class ModalSolution:
     rates: Floats
     contacts: Floats
     peak_force: float
+    time_of_peak_force: float
 
     @property
     def contact_duration(self) -> float:
@@ -131,6 +132,7 @@ def solve_with(
         rates=v[:, 1:],
         contacts=np.asarray(ends.reshape(-1, 2)),
         peak_force=hertz.contact_stiffness(impact) * float(delta(peak_time)) ** 1.5,
+        time_of_peak_force=peak_time,
     )
 
 

@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from scipy.integrate import solve_ivp, trapezoid
 from scipy.optimize import brentq
 
 from impactlab.model.impact import paper_impact
-from impactlab.verification.cases import timoshenko_impact
-from impactlab.verification.solutions.beam_modes import odd_modes
+from impactlab.verification.cases import slimmer, timoshenko_impact
+from impactlab.verification.solutions import hertz
+from impactlab.verification.solutions.beam_modes import odd_modes, shear_stiffness
 from impactlab.verification.solutions.hertz import contact_stiffness
 from impactlab.verification.solutions.modal import solve, solve_timoshenko, solve_with
 
@@ -20,21 +21,25 @@ SLENDER = replace(PAPER, beam=replace(PAPER.beam, depth=0.008, width=0.02))
 BENT = {"paper": (PAPER, 3e-4), "timoshenko": (TIMOSHENKO, 2e-4)}
 SHEARED = BENT | {"stubby": (STUBBY, 4e-4)}
 CASES = pytest.mark.parametrize(("impact", "duration"), BENT.values(), ids=BENT)
-
-
+SHEARED_CASES = pytest.mark.parametrize(("impact", "duration"), SHEARED.values(), ids=SHEARED)
 BOTH = pytest.mark.parametrize(
     ("solve", "impact", "duration"),
     [(solve, *case) for case in BENT.values()]
     + [(solve_timoshenko, *case) for case in SHEARED.values()],
     ids=[f"bernoulli-{name}" for name in BENT] + [f"timoshenko-{name}" for name in SHEARED],
 )
-
-
+CONVERGED = {solve: 1e-6, solve_timoshenko: 3e-6}
 CONSERVED = {solve: 5e-6, solve_timoshenko: 1e-5}
 
 
 def answers(solution):
     return np.array([solution.peak_force, solution.contact_duration])
+
+
+@BOTH
+def test_default_step_and_modes_are_converged(solve, impact, duration):
+    fine = answers(solve(impact, duration, modes=400, step=duration / 20_000))
+    np.testing.assert_allclose(answers(solve(impact, duration)), fine, rtol=CONVERGED[solve])
 
 
 @BOTH
@@ -44,6 +49,34 @@ def test_second_order_in_the_step(solve, impact, duration):
     )
     order = np.log2((coarse - middle) / (middle - fine))
     np.testing.assert_allclose(order, 2.0, atol=0.1)
+
+
+@CASES
+def test_few_modes_are_enough(impact, duration):
+    few, many = (answers(solve(impact, duration, modes=n)) for n in (10, 80))
+    np.testing.assert_allclose(few, many, rtol=1e-5)
+
+
+@SHEARED_CASES
+def test_error_falls_with_the_third_power_of_the_modes(impact, duration):
+    """The modes left out follow the load but for F''/omega^2, and their sum goes with 1/modes."""
+    fine = solve_timoshenko(impact, duration, modes=1600).midspan_deflection
+    errors = [
+        np.sqrt(
+            np.mean((solve_timoshenko(impact, duration, modes=n).midspan_deflection - fine) ** 2)
+        )
+        for n in (20, 160)
+    ]
+    assert errors[0] < 3e-6 * fine.max()
+    order = np.log(errors[0] / errors[1]) / np.log(8)
+    assert 2.3 < order < 3.7
+
+
+@pytest.mark.parametrize("solve", [solve, solve_timoshenko])
+def test_modes_left_out_matter(solve):
+    """One mode with its static rest is far from converged: the tests above can fail."""
+    one, many = (solve(PAPER, 3e-4, modes=n).peak_force for n in (1, 50))
+    assert abs(one / many - 1) > 1e-3
 
 
 def integrated(motion, duration, start, times, **options):
@@ -101,6 +134,49 @@ def test_agrees_with_a_general_integrator(impact, duration, share):
     np.testing.assert_allclose(solution.midspan_deflection[::400], whole, rtol=0, atol=1e-6 * scale)
 
 
+def sheared_motion(impact, count):
+    """Right side of the same equations in W and Psi, not in modes; the rest of them static."""
+    beam, k, a = impact.beam, contact_stiffness(impact), shear_stiffness(impact.beam)
+    n = np.arange(1, 2 * count, 2)
+    q, sign = n * np.pi / beam.span, (-1) ** (n // 2)
+    mu, EI = beam.mass_per_length, beam.bending_stiffness
+    inertia = mu * beam.depth**2 / 12
+    static = 2 / beam.span * (1 / (EI * q**4) + 1 / (a * q**2)).sum()
+    residual = beam.span**3 / (48 * EI) + beam.span / (4 * a) - static
+
+    def force(gap):
+        if gap <= 0:
+            return 0.0
+        delta = brentq(lambda d: d + residual * k * d**1.5 - gap, 0, gap, xtol=1e-20, rtol=1e-14)
+        return k * delta**1.5
+
+    def motion(_, state):
+        place, speed = np.split(state, 2)
+        W, Psi = np.split(place[1:], 2)
+        push = force(place[0] - sign @ W)
+        shear = a * (q * W - Psi)
+        deflect = (2 / beam.span * push * sign - q * shear) / mu
+        turn = (shear - EI * q**2 * Psi) / inertia
+        sphere = impact.gravity - push / impact.sphere.total_mass
+        return np.concatenate((speed, [sphere], deflect, turn))
+
+    return motion, sign
+
+
+@SHEARED_CASES
+def test_shear_agrees_with_a_general_integrator(impact, duration):
+    count = 3
+    start = np.zeros(2 * (2 * count + 1))
+    start[2 * count + 1] = impact.velocity
+    solution = solve_timoshenko(impact, duration, modes=count, step=duration / 4000)
+    motion, sign = sheared_motion(impact, count)
+    path = integrated(motion, duration, start, solution.time[::400])
+    np.testing.assert_allclose(solution.sphere_displacement[::400], path[0], rtol=2e-6, atol=1e-15)
+    lower, upper = solution.amplitudes[::400, :count], solution.amplitudes[::400, count:]
+    W = path[1 : count + 1].T * sign
+    np.testing.assert_allclose(lower + upper, W, rtol=0, atol=2e-6 * np.abs(W).max())
+
+
 def total_energy(impact, solution):
     """Kinetic, elastic, contact and gravitational energy in J, shape (time,)."""
     mass, modes = impact.sphere.total_mass, solution.modes
@@ -124,6 +200,104 @@ def test_energy_is_conserved(solve, impact, duration):
     energy = total_energy(impact, solve(impact, duration))
     start = 0.5 * impact.sphere.total_mass * impact.velocity**2
     np.testing.assert_allclose(energy, start, rtol=CONSERVED[solve])
+
+
+def test_wide_beam_is_a_half_space():
+    wide = replace(PAPER, beam=replace(PAPER.beam, width=1e6), gravity=0.0)
+    mass, radius = wide.sphere.total_mass, wide.sphere.radius
+    arguments = (mass, wide.velocity, hertz.effective_modulus(wide), radius)
+    expected = [hertz.peak_force(*arguments), hertz.contact_duration(*arguments)]
+    solution = solve(wide, 3e-4)
+    np.testing.assert_allclose(answers(solution), expected, rtol=2e-6)
+    assert solution.time_of_peak_force == pytest.approx(expected[1] / 2, rel=2e-6)
+    assert solution.sphere_velocity[-1] == pytest.approx(-wide.velocity, rel=2e-6)
+
+
+def test_contacts_are_where_the_force_is():
+    solution = solve(SLENDER, 5e-3)
+    assert len(solution.contacts) >= 2
+    assert solution.contacts[0, 0] == 0.0
+    assert np.all(np.diff(solution.contacts.ravel()[:-1]) > 0)
+    ends = np.nan_to_num(solution.contacts, nan=np.inf)
+    inside = np.any((ends[:, :1] < solution.time) & (solution.time < ends[:, 1:]), axis=0)
+    np.testing.assert_array_equal(inside, solution.contact_force > 0)
+    assert solution.contact_duration == solution.contacts[0, 1]
+
+
+def test_contact_that_outlasts_the_duration_has_no_end():
+    solution = solve(PAPER, 1.5e-4)
+    assert np.isnan(solution.contact_duration)
+    assert solution.peak_force == pytest.approx(solve(PAPER, 3e-4).peak_force, rel=1e-6)
+    # history at other times
+    solution, fine = solve(PAPER, 3e-4, step=1e-6), solve(PAPER, 3e-4, step=2.5e-7)
+    times = np.array([3.33e-5, 1.111e-4])
+    indentation = solution.at("indentation", times)
+    np.testing.assert_allclose(indentation, fine.at("indentation", times), rtol=1e-4)
+    # sphere loses the impulse of the force
+    solution, mass = solve(PAPER, 3e-4), PAPER.sphere.total_mass
+    impulse = trapezoid(solution.contact_force, solution.time)
+    change = mass * (solution.sphere_velocity[-1] - 0.99) - mass * 9.81 * 3e-4
+    assert -change == pytest.approx(impulse, rel=1e-9)
+
+
+def test_peak_force_is_above_every_step_and_close_to_the_highest():
+    solution = solve(PAPER, 3e-4, step=1e-5)
+    assert solution.peak_force > solution.contact_force.max()
+    fine = solve(PAPER, 3e-4)
+    assert fine.peak_force == pytest.approx(fine.contact_force.max(), rel=5e-6)
+    nearest = fine.time[np.argmax(fine.contact_force)]
+    assert fine.time_of_peak_force == pytest.approx(nearest, abs=fine.time[1])
+
+
+def deflection(solution, x, step):
+    """Return w (m) of Euler and Bernoulli's beam at `x` (m): modes, and the others' static rest."""
+    modes, beam = solution.modes, solution.modes.beam
+    off = x - beam.span / 2
+    shapes, near = np.cos(np.outer(modes.wave_numbers, off)), beam.span / 2 - np.abs(off)
+    static = near * (3 * beam.span**2 - 4 * near**2) / (48 * beam.bending_stiffness)
+    rest = static - modes.flexibilities @ shapes
+    return solution.amplitudes[step] @ shapes + solution.contact_force[step] * rest
+
+
+def test_midspan_curvature_is_the_second_derivative_of_the_deflection():
+    # Few modes, so that those left out carry a good part of the curvature.
+    solution, dx = solve(PAPER, 3e-4, modes=8), PAPER.beam.span / 4000
+    step = np.argmax(solution.contact_force)
+    middle = PAPER.beam.span / 2
+    w = deflection(solution, middle + np.array([-dx, 0.0, dx]), step)
+    expected = (w[0] - 2 * w[1] + w[2]) / dx**2
+    assert expected < 0
+    assert solution.midspan_curvature[step] == pytest.approx(expected, rel=1e-2)
+
+
+def test_moment_under_a_slow_load_is_that_of_statics():
+    """A light and slow sphere on a short beam: psi_x = -F L/(4 EI), the load being static."""
+    impact = replace(STUBBY, velocity=1e-9, gravity=0.0, beam=replace(STUBBY.beam, span=0.1))
+    impact = replace(impact, beam=replace(impact.beam, depth=0.05))
+    solution = solve_timoshenko(impact, 5e-3, modes=40, step=5e-6)
+    beam, deepest = impact.beam, np.argmax(solution.contact_force)
+    force = solution.contact_force[deepest]
+    expected = -force * beam.span / (4 * beam.bending_stiffness)
+    assert solution.midspan_curvature[deepest] == pytest.approx(expected, rel=0.02)
+
+
+@SHEARED_CASES
+def test_slender_limit_is_the_euler_bernoulli_beam(impact, duration):
+    """To bending all of these are one beam; shear and rotary inertia go with (depth/span)^2."""
+    bare = solve(impact, duration, modes=100)
+    step, scale = bare.time[1], bare.contact_force.max()
+    gaps = []
+    for times in (4, 8, 16):
+        slim = slimmer(impact, times)
+        same = solve(slim, duration, modes=100, step=step)
+        np.testing.assert_allclose(same.contact_force, bare.contact_force, atol=1e-9 * scale)
+        gap = (
+            solve_timoshenko(slim, duration, modes=100, step=step).contact_force
+            - bare.contact_force
+        )
+        gaps.append(np.sqrt(np.mean(gap**2)) / scale)
+    assert gaps[0] < 0.01
+    np.testing.assert_allclose(np.log2(gaps[1] / gaps[2]), 2.0, atol=0.05)
 
 
 def test_papers_case():
