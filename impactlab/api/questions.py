@@ -175,7 +175,7 @@ def size(
 
 def multifidelity(
     study: Study,
-    high: Mapping[str, Any],
+    high: Mapping[str, Any] | None = None,
     *,
     pairs: int = 40,
     runs: int = 0,
@@ -192,9 +192,10 @@ def multifidelity(
     ----------
     study : Study
         Sample of any method, of which the distributions, the seed, responses and limits count.
-    high : mapping of str to Quantity
+    high : mapping of str to Quantity, optional
         Values of the slow model's parameters in place of the study's, such as
-        `{"beam_model": "solid", "elements_per_radius": 2}`.
+        `{"beam_model": "solid", "elements_per_radius": 2}`; by default all settings are those that
+        the study states (docs/studies.md).
     pairs : int, default 40
         Number of runs of the slow model, at least 20.
     runs : int, default 0

@@ -23,7 +23,7 @@ from impactlab.analysis.multifidelity import (
     Multifidelity,
     best_ratio,
 )
-from impactlab.files import write_netcdf
+from impactlab.files import opened, write_netcdf
 from impactlab.methods.runs import usable
 from impactlab.model.checks import integer
 from impactlab.model.cost import A_SECOND
@@ -36,8 +36,7 @@ from impactlab.study.execute import execute
 from impactlab.study.ownership import study_file
 from impactlab.study.rare_event import ScoreRuns
 from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
-from impactlab.study.schema.readers import study_of_content
-from impactlab.study.schema.yaml_file import read_mapping
+from impactlab.study.schema.readers import slow_study
 from impactlab.study.solvers import solver_named
 from impactlab.types import Floats
 from impactlab.validation.fields import plain
@@ -70,7 +69,7 @@ def multifidelity(
     study: AnyStudy,
     folder: Path,
     engine: Engine,
-    high: Mapping[str, Any],
+    high: Mapping[str, Any] | None = None,
     *,
     pairs: int = 40,
     runs: int = 0,
@@ -78,22 +77,25 @@ def multifidelity(
 ) -> xr.Dataset:
     """Return statistics of a study's responses by a slow model; see il.multifidelity.
 
-    folder: of the study's results. runs: of the fast model; 0: the best number. budget: in s of one
-    core, from which the numbers of pairs and runs follow; 0: none. Runs are kept in
-    `folder`/multifidelity and are not solved again.
+    folder: of the study's results. high: without it, all settings are the study's. runs: of the
+    fast model; 0: the best number. budget: in s of one core, from which the numbers of pairs and
+    runs follow; 0: none. Runs are kept in `folder`/multifidelity and are not solved again.
 
     Raises as ScoreRuns.of and for a slow model that the study cannot have, and ValueError for
     settings out of range.
     """
     owner = "multifidelity"
+    if high is None and (section := study.multifidelity):
+        high, pairs, runs, budget = section.high, section.pairs, section.runs, section.budget
+    high = high or {}
     pairs = integer(owner, "pairs", pairs, FEWEST_PAIRS)
     runs = integer(owner, "runs", runs, 0)
     if not (np.isfinite(budget) and budget >= 0.0):
         raise ValueError(f"{owner}: budget = {budget!r}: must be positive")
     fast = ScoreRuns.of(study, folder, engine, f"{MULTIFIDELITY}/low")
-    slow_study = _slow_study(study, fast.declared, high)
-    first = design(slow_study, 0, 1).assign_attrs(histories=0, profiles=0)
-    slow = replace(fast, declared=slow_study, first=first, folder=fast.folder.with_name("high"))
+    declared = slow_study(fast.declared, high)
+    first = design(declared, 0, 1).assign_attrs(histories=0, profiles=0)
+    slow = replace(fast, declared=declared, first=first, folder=fast.folder.with_name("high"))
     if not isinstance(study, ImpactStudy) and (budget or not runs):
         raise ValueError(f"{owner}: runs: must be stated, because what functions cost is not known")
     pairs = FEWEST_PAIRS if budget else pairs
@@ -135,29 +137,17 @@ def multifidelity(
     return dataset
 
 
-def _slow_study(study: AnyStudy, declared: AnyStudy, high: Mapping[str, Any]) -> AnyStudy:
-    """Return the study with other values of parameters, read and checked as its file is.
-
-    declared: with its discretisation. Raises StudyError where it cannot have them, ValueError for
-    none, or for a parameter that is drawn.
-    """
-    if not high:
-        raise ValueError(
-            "multifidelity: high: state what the slow model has in place of the study's, such as "
-            "beam_model=solid elements_per_radius=2, or nodes=601"
-        )
-    content = read_mapping(declared.text, str(declared.path))
-    if isinstance(study, ImpactStudy) and study.auto is not None:
-        content["discretisation"] = plain(declared.discretisation)  # type: ignore[union-attr]
-    for name, value in high.items():
-        if name in declared.sampling.varied:
-            raise ValueError(
-                f"multifidelity: high: {name} is drawn, and both models have the same draws: "
-                "take it out"
-            )
-        entry = {"distribution": "fixed", "value": plain(value)}
-        content["sampling"]["parameters"][name] = entry
-    return study_of_content(declared.name, content, Path("the slow model"))
+def slow_answer(runs: xr.Dataset, folder: Path) -> str:
+    """Return the answer in `folder` on the slow model that the study of the runs asks for."""
+    path = folder / f"{MULTIFIDELITY}.nc"
+    if path.is_file():
+        with opened(path, "multifidelity", indexed=False) as stored:
+            if stored.attrs["study_sha256"] == runs.attrs["study_sha256"]:
+                return str(stored.attrs["answer"])
+    return (
+        f"No answer yet with {runs.attrs['slow_model']}.\n"
+        "Caution: the runs of the slow model are not solved: `impactlab run` solves them."
+    )
 
 
 def _scores(model: ScoreRuns, runs: int) -> Floats:
