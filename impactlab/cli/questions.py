@@ -116,6 +116,9 @@ def multifidelity(
     budget: Annotated[
         str, typer.Option(help="Time of one core, such as '40 min', in place of --pairs.")
     ] = "",
+    indices: Annotated[
+        bool, typer.Option("--indices", help="Sobol indices of the slow model, too.")
+    ] = False,
     workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
 ) -> None:
     """Estimate statistics of a slow model by a fast one.
@@ -137,5 +140,7 @@ def multifidelity(
     seconds = given("--budget", budget, "s") if budget else 0.0
     texts = assigned(high) if high else {}
     values = {name: int(t) if t.isdecimal() else t for name, t in texts.items()} or None
-    result = statistics(declared, folder, engine, values, pairs=pairs, runs=runs, budget=seconds)
+    result = statistics(
+        declared, folder, engine, values, pairs=pairs, runs=runs, budget=seconds, indices=indices
+    )
     print(result.attrs["answer"], report_multifidelity(result, folder), sep="\n")

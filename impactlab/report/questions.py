@@ -109,10 +109,32 @@ def _slow_model(result: xr.Dataset) -> list[Table]:
         units = result[name].attrs["units"].replace("1", "")
         meaning = labels.axis(labels.sentence(str(result[name].attrs["long_name"])), units)
         numbers.append([meaning, _cell(result[name].item())])
-    return [
+    tables = [
         Table("Statistics of the slow model", head, rows),
         Table("Runs and costs", ["Number", "Value"], numbers),
     ]
+    if "slow_index" in result:
+        tables.insert(1, _slow_indices(result))
+    return tables
+
+
+def _slow_indices(result: xr.Dataset) -> Table:
+    """Return one row per response and parameter: its indices, or why there are none."""
+    from impactlab.study.multifidelity_indices import stated_index
+
+    rows: list[Row] = []
+    for response in result["response"].values:
+        alone, name = result.sel(response=response), labels.title(str(response))
+        if reason := str(alone["index_refusal"].item()):
+            rows.append([name, "all", *[Cell("none", "warning", reason)] * 2])
+            continue
+        for parameter in result["parameter"].values:
+            one = alone.sel(parameter=parameter)
+            texts = [stated_index(values) for values in one["slow_index"].values]
+            text = labels.sentence(str(one["parameter_long_name"].item()))
+            rows.append([name, text, *(Cell(text, "number") for text in texts)])
+    head = ["Response", "Parameter", "First order", "Total order"]
+    return Table("Sobol indices of the slow model: shares of its variance", head, rows)
 
 
 def answers_beside(runs: xr.Dataset, folder: Path) -> Iterator[tuple[str, str, str]]:

@@ -184,6 +184,10 @@ def estimate(study: AnyStudy, folder: Path, workers: int, runs: int = 0) -> Esti
         slow_runs = slow_study(study, section.high)
         pairs = estimate(slow_runs, folder, workers, section.pairs).seconds
         seconds += section.budget or 2 * pairs
+        if section.indices:
+            from impactlab.study.multifidelity_indices import number_of_runs
+
+            seconds += float(sampled.mean()) * number_of_runs(parameters, section.pairs)
     answers = _IN_MEMORY * _NUMBER * runs * float(held + parameters)
     return Estimate(
         file=file,

@@ -165,18 +165,22 @@ class Analysis(FileSection):
     failed_runs: Annotated[str, one_of("policy", ("fail", "impute"))] = "fail"
 
 
+_Seconds: Any = quantity("s")
+
+
 class SlowModel(FileSection):
     """The key `multifidelity`: few runs of a slow model beside many of the study's (docs).
 
     high: values of the slow model's parameters in place of the study's. pairs: number of its runs,
     and runs of the study's model; 0: the best number. budget: time of one core in s, in place of
-    pairs; 0: none.
+    pairs; 0: none. indices: True for Sobol indices, which take further runs of the study's model.
     """
 
     high: Annotated[dict[StrictStr, Any], Field(min_length=1)]
     pairs: Annotated[Whole, Field(ge=20, le=10_000)] = 40
     runs: Annotated[Whole, Field(ge=0, le=1_000_000)] = 0
-    budget: Annotated[quantity("s"), Field(ge=0)] = 0.0
+    budget: Annotated[_Seconds, Field(ge=0)] = 0.0
+    indices: StrictBool = False
 
     def __str__(self) -> str:
         """Return the values of the slow model in words."""

@@ -143,6 +143,47 @@ def test_an_automatic_grid_is_that_of_the_fast_model_alone(tmp_path):
     assert describe(tmp_path / "auto.yaml")["traits"] == ["auto", "sample", "multifidelity"]
 
 
+def test_indices_are_those_of_the_slow_model(tmp_path):
+    """The noise hardly matters to the slow model, and half as much again to the fast one."""
+
+    def linear(x, noise, power):
+        return power * x + noise + 0.02 * x**2
+
+    parameters = {"x": il.Normal(0, 1), "noise": il.Normal(0, 1), "power": 2.5}
+    sampling = il.Pawn(samples=128, parameters=parameters)
+    linears = [
+        study(tmp_path / name, linear, sampling=sampling, limits=None) for name in ("one", "two")
+    ]
+    results = [
+        il.multifidelity(linears[row], {"power": 3}, runs=500, indices=True, workers=row + 1)
+        for row in range(2)
+    ]
+    np.testing.assert_array_equal(results[0].slow_index, results[1].slow_index)
+    for parameter, exact in (("x", 0.9), ("noise", 0.1)):
+        for order in ("first_order", "total_order"):
+            index = results[0].slow_index.sel(parameter=parameter, order=order).values[0]
+            assert index[1] < exact < index[2]
+            assert index[2] - index[1] < 0.15
+    assert "Sensitivity: the value scatters with x 9" in results[0].answer
+    page = (tmp_path / "one" / "power" / "multifidelity.html").read_text("utf-8")
+    assert "Sobol indices of the slow model" in page
+
+
+def test_indices_are_refused_where_runs_have_no_answer_or_parameters_correlate(tmp_path):
+    result = il.multifidelity(
+        study(tmp_path, sometimes_failing), {"power": 2}, runs=500, indices=True, workers=1
+    )
+    assert result.slow_index.isnull().all()
+    missing = int(result.slow.isnull().sum())
+    assert f"no indices of the value: {missing} runs have no answer" in result.answer
+    parameters = {"x": il.Uniform(0, 1), "noise": il.Normal(0, 1), "power": 1.7}
+    sampling = il.Pawn(samples=128, parameters=parameters, correlations=[("x", "noise", 0.5)])
+    with pytest.raises(il.StudyError, match="assume independent parameters"):
+        il.multifidelity(
+            study(tmp_path / "two", sampling=sampling), {"power": 2}, runs=500, indices=True
+        )
+
+
 def test_pairs_without_an_answer_are_left_out_and_counted(tmp_path):
     result = il.multifidelity(study(tmp_path, sometimes_failing), {"power": 2}, runs=500, workers=1)
     missing = int(result.slow.isnull().sum())
