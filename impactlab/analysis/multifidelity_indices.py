@@ -13,7 +13,7 @@ holds both ends, each with its error by the jackknife over the pairs, and is thu
 level asks for where the rest is of other parameters. Sobol' (2001), Math. Comput. Simul. 55, 271.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy  # its stats are loaded when first used
@@ -34,32 +34,32 @@ class FastIndex:
     parts: Floats
 
 
-def first_order(outputs: Floats, others: Floats, mixed: Floats, parts: Floats) -> FastIndex:
+def first_order(outputs: Floats, second: Floats, mixed: Floats, parts: Floats) -> FastIndex:
     """Return an index of first order: Saltelli and others (2010), Comput. Phys. Commun. 181, 259.
 
-    outputs, others: (base samples,), at two independent draws; mixed: at the first ones with the
-    parameter of the others. parts: (redraws, pairs), at the parameter of the pairs, all others
-    drawn anew.
+    outputs, second: (base samples,), at two independent draws; mixed: at the first ones with the
+    parameter of the second ones. parts: (redraws, pairs), at the parameter of the pairs, all other
+    parameters drawn anew.
     """
-    mean = np.mean([outputs, others])
-    shares = (others - mean) * (mixed - outputs)
-    return _ratio(shares, outputs, others, parts.mean(axis=0))
+    mean = np.mean([outputs, second])
+    shares = (second - mean) * (mixed - outputs)
+    return _ratio(shares, outputs, second, parts.mean(axis=0))
 
 
 def total_order(
-    outputs: Floats, others: Floats, mixed: Floats, parts: Floats, low: Floats
+    outputs: Floats, second: Floats, mixed: Floats, parts: Floats, low: Floats
 ) -> FastIndex:
     """Return an index of total order: Jansen (1999), Comput. Phys. Commun. 117, 35.
 
     As `first_order`, but parts: at the pairs, the parameter drawn anew; low: outputs at the pairs.
     """
-    return _ratio((outputs - mixed) ** 2 / 2, outputs, others, low - parts.mean(axis=0))
+    return _ratio((outputs - mixed) ** 2 / 2, outputs, second, low - parts.mean(axis=0))
 
 
-def _ratio(shares: Floats, outputs: Floats, others: Floats, parts: Floats) -> FastIndex:
+def _ratio(shares: Floats, outputs: Floats, second: Floats, parts: Floats) -> FastIndex:
     """Return the mean share of the variance, and its error by the derivative of the ratio."""
-    mean = np.mean([outputs, others])
-    variances = ((outputs - mean) ** 2 + (others - mean) ** 2) / 2
+    mean = np.mean([outputs, second])
+    variances = ((outputs - mean) ** 2 + (second - mean) ** 2) / 2
     value = shares.mean() / variances.mean()
     spread = (shares - value * variances).std(ddof=1) / variances.mean()
     return FastIndex(float(value), float(spread / np.sqrt(shares.size)), parts)
@@ -76,17 +76,13 @@ def slow_index(
     """
     pairs = high.size
     ends = _ends(low, high, variance, fast)
-    others = [
-        _ends(
-            *(np.delete(column, pair) for column in (low, high)),
-            variance,
-            FastIndex(fast.value, fast.error, np.delete(fast.parts, pair)),
-        )
-        for pair in range(pairs)
-    ]
-    pseudo = pairs * ends - (pairs - 1) * np.array(others)
-    known = (1.0 - (ends[1] - ends[0])) * fast.error  # of the variance that is the fast model's
-    errors = np.sqrt(pseudo.var(axis=0, ddof=1) / pairs + known**2)
+    reduced = []
+    for pair in range(pairs):
+        fewer = [np.delete(column, pair) for column in (low, high, fast.parts)]
+        reduced.append(_ends(fewer[0], fewer[1], variance, replace(fast, parts=fewer[2])))
+    pseudo = pairs * ends - (pairs - 1) * np.array(reduced)
+    error = (1.0 - (ends[1] - ends[0])) * fast.error  # of the variance that is the fast model's
+    errors = np.sqrt(pseudo.var(axis=0, ddof=1) / pairs + error**2)
     factor = scipy.stats.t.ppf(0.5 + confidence / 2, pairs // 2 - 1)
     low_end, high_end = pseudo.mean(axis=0) + factor * errors * [-1, 1]
     low_end, high_end = np.clip([low_end, max(high_end, low_end)], 0.0, 1.0).tolist()
@@ -101,6 +97,6 @@ def _ends(low: Floats, high: Floats, variance: float, fast: FastIndex) -> Floats
     rest = high - high.mean() - slope * about
     unknown = rest @ rest / (high.size - 2)
     shared = (fast.parts - fast.parts.mean()) @ rest / (high.size - 1)
-    whole = slope**2 * variance + unknown
-    least = (slope**2 * variance * fast.value + 2 * slope * shared) / whole
-    return np.array([least, least + unknown / whole])
+    total = slope**2 * variance + unknown
+    least = (slope**2 * variance * fast.value + 2 * slope * shared) / total
+    return np.array([least, least + unknown / total])

@@ -129,9 +129,9 @@ def _slow_indices(result: xr.Dataset) -> Table:
             rows.append([name, "all", *[Cell("none", "warning", reason)] * 2])
             continue
         for parameter in result["parameter"].values:
-            one = alone.sel(parameter=parameter)
-            texts = [stated_index(values) for values in one["slow_index"].values]
-            text = labels.sentence(str(one["parameter_long_name"].item()))
+            shares = alone.sel(parameter=parameter)
+            texts = [stated_index(values) for values in shares["slow_index"].values]
+            text = labels.sentence(str(shares["parameter_long_name"].item()))
             rows.append([name, text, *(Cell(text, "number") for text in texts)])
     head = ["Response", "Parameter", "First order", "Total order"]
     return Table("Sobol indices of the slow model: shares of its variance", head, rows)

@@ -44,12 +44,12 @@ def slow_indices(
     pairs, parameters = scores.shape
     rng = np.random.default_rng([model.sampling.seed, 40])
     base = rng.standard_normal((2, BASE_SAMPLES, parameters))
-    drawn = rng.standard_normal((REDRAWS, pairs, parameters))
+    redraws = rng.standard_normal((REDRAWS, pairs, parameters))
     blocks = [scores, *base]
     for column in range(parameters):
         blocks.append(_with(base[0], base[1], column))
-        blocks.append(_with(drawn, scores, column).reshape(-1, parameters))
-        blocks.append(_with(scores, drawn, column).reshape(-1, parameters))
+        blocks.append(_with(redraws, scores, column).reshape(-1, parameters))
+        blocks.append(_with(scores, redraws, column).reshape(-1, parameters))
     ends = np.cumsum([len(block) for block in blocks])[:-1]
     fast = solved(np.concatenate(blocks))
     names = fast["response"].values.tolist()
@@ -106,10 +106,10 @@ def stated_index(values: Floats) -> str:
     return f"{value} % ({low} to {high} %)"
 
 
-def _with(scores: Floats, others: Floats, column: int) -> Floats:
-    """Return scores with a column of the others; they spread over the further axes of either."""
-    mixed = np.broadcast_to(scores, np.broadcast_shapes(scores.shape, others.shape)).copy()
-    mixed[..., column] = others[..., column]
+def _with(scores: Floats, second: Floats, column: int) -> Floats:
+    """Return scores with a column of second ones; they spread over the further axes of either."""
+    mixed = np.broadcast_to(scores, np.broadcast_shapes(scores.shape, second.shape)).copy()
+    mixed[..., column] = second[..., column]
     return mixed
 
 
@@ -122,16 +122,16 @@ def _of_response(
         raise ValueError(
             f"{missing} runs have no answer, and indices need all of them: narrow the distributions"
         )
-    low, outputs, others, *rest = blocks
+    low, outputs, second, *rest = blocks
     if np.ptp(low) == 0.0 or np.ptp(high) == 0.0 or np.ptp(outputs) == 0.0:
         raise ValueError("outputs that do not vary have no indices")
-    variance = float(np.concatenate([outputs, others]).var(ddof=1))
+    variance = float(np.concatenate([outputs, second]).var(ddof=1))
     indices: list[list[FastIndex]] = [[], []]
     for column in range(parameters):
         mixed, alone, without = rest[3 * column : 3 * column + 3]
         parts = alone.reshape(REDRAWS, -1), without.reshape(REDRAWS, -1)
-        indices[0].append(first_order(outputs, others, mixed, parts[0]))
-        indices[1].append(total_order(outputs, others, mixed, parts[1], low))
+        indices[0].append(first_order(outputs, second, mixed, parts[0]))
+        indices[1].append(total_order(outputs, second, mixed, parts[1], low))
     return [
         [slow_index(low, high, variance, fast, confidence) for fast in order] for order in indices
     ]
