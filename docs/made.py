@@ -43,6 +43,7 @@ INCH = 140
 WORKERS = min(4, os.cpu_count() or 1)
 SHOWN = ("velocity", "contact_laws", "shear", "strike_position", "supports", "strikes", "layers",
          "material", "model_form", "sobol_slow", "sobol", "sobol_fast", "sobol_large",
+         "multifidelity",
          "discretisation", "time_step", "ishigami", "smoke")  # fmt: skip
 FIRST = {
     "contact_laws": "contact_laws",

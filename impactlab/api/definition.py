@@ -55,6 +55,9 @@ class Study(StudyFolder):
         Settings of the analysis, as in a file.
     measurements : sequence of str, optional
         Files that the report compares with the runs (see `compare`).
+    multifidelity : mapping, optional
+        Slow model: `{"high": {"nodes": 601}, "pairs": 40}` solves few runs of it beside many of the
+        study's, as `multifidelity` does, and the report opens with what they tell.
     description : str, optional
         Text for the report.
     function : str, callable or Function, optional
@@ -120,6 +123,7 @@ class Study(StudyFolder):
         store: Mapping[str, Any] | None = None,
         analysis: Mapping[str, Any] | None = None,
         measurements: Sequence[str] | None = None,
+        multifidelity: Mapping[str, Any] | None = None,
         description: str | None = None,
         function: str | Function | Callable[..., Any] | None = None,
         name: str | None = None,
@@ -153,6 +157,7 @@ class Study(StudyFolder):
             "store": store,
             "analysis": analysis,
             "measurements": measurements,
+            "multifidelity": multifidelity,
         }
         content: dict[str, Any] = {}
         for key, section in sections.items():

@@ -175,11 +175,12 @@ def size(
 
 def multifidelity(
     study: Study,
-    high: Mapping[str, Any],
+    high: Mapping[str, Any] | None = None,
     *,
     pairs: int = 40,
     runs: int = 0,
     budget: Quantity = 0.0,
+    indices: bool = False,
     workers: int = CORES,
 ) -> xr.Dataset:
     """Estimate statistics of a slow model from few of its runs and many of the study's model.
@@ -192,9 +193,10 @@ def multifidelity(
     ----------
     study : Study
         Sample of any method, of which the distributions, the seed, responses and limits count.
-    high : mapping of str to Quantity
+    high : mapping of str to Quantity, optional
         Values of the slow model's parameters in place of the study's, such as
-        `{"beam_model": "solid", "elements_per_radius": 2}`.
+        `{"beam_model": "solid", "elements_per_radius": 2}`; by default all settings are those that
+        the study states (docs/studies.md).
     pairs : int, default 40
         Number of runs of the slow model, at least 20.
     runs : int, default 0
@@ -202,6 +204,9 @@ def multifidelity(
         pairs.
     budget : Quantity, default 0
         Time of one core, in s, in place of `pairs`: 20 pairs tell how many it pays for.
+    indices : bool, default False
+        True for Sobol indices of the slow model, too: they take 2,048 further runs of the study's
+        model per parameter, and more.
     workers : int, optional
         Number of threads; by default that of the machine's cores.
 
@@ -209,7 +214,8 @@ def multifidelity(
     -------
     xarray.Dataset
         `estimate` on (response, statistic, bound), `saving`, `correlation`, costs, `verdict` and
-        the pairs; the attribute `answer` holds the findings in sentences. They are kept in the
+        the pairs; with `indices`, `slow_index` on (response, order, parameter, bound); the
+        attribute `answer` holds the findings in sentences. They are kept in the
         study's folder as multifidelity.nc, with the report multifidelity.html.
 
     Raises
@@ -234,7 +240,8 @@ def multifidelity(
 
     seconds, engine = si(budget, "s"), local_engine(workers)
     result = statistics(
-        study.declared, study.folder, engine, high, pairs=pairs, runs=runs, budget=seconds
-    )
+        study.declared, study.folder, engine, high, pairs=pairs, runs=runs, budget=seconds,
+        indices=indices,
+    )  # fmt: skip
     report_multifidelity(result, study.folder)
     return result

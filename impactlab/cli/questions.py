@@ -103,18 +103,21 @@ def size(
 def multifidelity(
     study: StudyFile,
     high: Annotated[
-        list[str],
+        list[str] | None,
         typer.Argument(
             metavar="NAME=VALUE...",
             help="What the slow model has in place of the study's, such as beam_model=solid "
-            "elements_per_radius=2, or nodes=601.",
+            "elements_per_radius=2, or nodes=601. Without it, all settings are the study's.",
         ),
-    ],
+    ] = None,
     pairs: Annotated[int, typer.Option(help="Runs of the slow model.")] = 40,
     runs: Annotated[int, typer.Option(help="Runs of the study's model; 0: the best number.")] = 0,
     budget: Annotated[
         str, typer.Option(help="Time of one core, such as '40 min', in place of --pairs.")
     ] = "",
+    indices: Annotated[
+        bool, typer.Option("--indices", help="Sobol indices of the slow model, too.")
+    ] = False,
     workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
 ) -> None:
     """Estimate statistics of a slow model by a fast one.
@@ -134,6 +137,9 @@ def multifidelity(
     declared = read_study(study)
     folder, engine = steps.results_folder(declared.name), Engine("threads", workers)
     seconds = given("--budget", budget, "s") if budget else 0.0
-    values = {name: int(t) if t.isdecimal() else t for name, t in assigned(high).items()}
-    result = statistics(declared, folder, engine, values, pairs=pairs, runs=runs, budget=seconds)
+    texts = assigned(high) if high else {}
+    values = {name: int(t) if t.isdecimal() else t for name, t in texts.items()} or None
+    result = statistics(
+        declared, folder, engine, values, pairs=pairs, runs=runs, budget=seconds, indices=indices
+    )
     print(result.attrs["answer"], report_multifidelity(result, folder), sep="\n")

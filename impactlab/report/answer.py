@@ -78,11 +78,22 @@ def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
 def entries(runs: xr.Dataset, analysis: xr.Dataset | None) -> tuple[str, list[list[Entry]], str]:
     """Return the headline of an answer, the entries of its other lines, and a note on the numbers.
 
-    The headline is a sentence without its full stop.
+    The headline is a sentence without its full stop. A slow model that the study asks for leads.
     """
     if analysis is None:
         headline, findings = _verification(runs)
         return headline, [[entry] for entry in findings[: LINES - 1]], ""
+    headline, lines, note = _of_runs(runs, analysis)
+    if answer := analysis.attrs.get("slow_model_answer"):
+        slow, *rest = (line.removesuffix(".") for line in answer.splitlines())
+        findings = [(subject, text) for subject, _, text in (line.partition(": ") for line in rest)]
+        findings = [entry for entry in findings if entry[0] != "Allocation"]
+        lines = [*packed(findings, 2), [("The study's own model", headline)], *lines]
+        headline, lines = slow, lines[: LINES - 1]
+    return headline, lines, note
+
+
+def _of_runs(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, list[list[Entry]], str]:
     shown = _stated(runs)
     if not shown:
         return "There is no answer in these runs", [], ""

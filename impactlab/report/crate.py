@@ -25,6 +25,7 @@ _FILES = {
     "resolution.nc": "Pilot runs that determined the discretisation",
     "refinement.nc": "Runs solved again on finer grids",
     "runs.nc": "Responses of all runs",
+    "multifidelity.nc": "Statistics of a slow model by few of its runs",
     "findings.nc": "Comparisons of the solver with independent values",
     "analysis.nc": "Convergence and sensitivity",
     "indices.nc": "Sensitivity indices with intervals",
@@ -32,7 +33,14 @@ _FILES = {
     "distribution.csv": "Distribution of each response, and probabilities of exceeding limits",
     "surrogate.nc": "Surrogates of the responses",
 }
-_SOLVED = ("design.nc", "resolution.nc", "refinement.nc", "runs.nc", "findings.nc")
+_SOLVED = (
+    "design.nc",
+    "resolution.nc",
+    "refinement.nc",
+    "runs.nc",
+    "multifidelity.nc",
+    "findings.nc",
+)
 Entity = dict[str, Any]
 
 

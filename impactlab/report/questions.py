@@ -67,10 +67,29 @@ def report_sizing(result: xr.Dataset, folder: Path) -> Path:
 
 def report_multifidelity(result: xr.Dataset, folder: Path) -> Path:
     """Write the report of statistics by two models into a study's folder; return its path."""
-    from impactlab.study.multifidelity import stated  # late: the other questions do without
-
     figures = folder / MULTIFIDELITY / "figures"
     draw(_drawings(result), figures, str(result.attrs.get("study")))
+    sections = [Section("numbers", "The estimates", tables=_slow_model(result))]
+    return _written(result, folder, figures, MULTIFIDELITY, "Two models", "multifidelity", sections)
+
+
+def slow_model_sections(runs: xr.Dataset, folder: Path) -> list[Section]:
+    """Return the section on the slow model that a study asks for, and write its page beside."""
+    path = folder / f"{MULTIFIDELITY}.nc"
+    if "slow_model" not in runs.attrs or not path.is_file():
+        return []
+    result = read_netcdf(path, MULTIFIDELITY)
+    if result.attrs["study_sha256"] != runs.attrs["study_sha256"]:
+        return []
+    report_multifidelity(result, folder)
+    title = f"With {runs.attrs['slow_model']}"
+    return [Section(MULTIFIDELITY, title, tables=_slow_model(result))]
+
+
+def _slow_model(result: xr.Dataset) -> list[Table]:
+    """Return the tables of statistics by two models, and of their runs and costs."""
+    from impactlab.study.multifidelity import stated  # late: the other questions do without
+
     rows: list[Row] = []
     for row, response in enumerate(result["response"].values):
         for column, statistic in enumerate(result["statistic"].values):
@@ -94,8 +113,28 @@ def report_multifidelity(result: xr.Dataset, folder: Path) -> Path:
         Table("Statistics of the slow model", head, rows),
         Table("Runs and costs", ["Number", "Value"], numbers),
     ]
-    sections = [Section("numbers", "The estimates", tables=tables)]
-    return _written(result, folder, figures, MULTIFIDELITY, "Two models", "multifidelity", sections)
+    if "slow_index" in result:
+        tables.insert(1, _slow_indices(result))
+    return tables
+
+
+def _slow_indices(result: xr.Dataset) -> Table:
+    """Return one row per response and parameter: its indices, or why there are none."""
+    from impactlab.study.multifidelity_indices import stated_index
+
+    rows: list[Row] = []
+    for response in result["response"].values:
+        alone, name = result.sel(response=response), labels.title(str(response))
+        if reason := str(alone["index_refusal"].item()):
+            rows.append([name, "all", *[Cell("none", "warning", reason)] * 2])
+            continue
+        for parameter in result["parameter"].values:
+            shares = alone.sel(parameter=parameter)
+            texts = [stated_index(values) for values in shares["slow_index"].values]
+            text = labels.sentence(str(shares["parameter_long_name"].item()))
+            rows.append([name, text, *(Cell(text, "number") for text in texts)])
+    head = ["Response", "Parameter", "First order", "Total order"]
+    return Table("Sobol indices of the slow model: shares of its variance", head, rows)
 
 
 def answers_beside(runs: xr.Dataset, folder: Path) -> Iterator[tuple[str, str, str]]:
@@ -116,6 +155,8 @@ def answers_beside(runs: xr.Dataset, folder: Path) -> Iterator[tuple[str, str, s
             headline, *lines = (line.removesuffix(".") for line in attrs["answer"].splitlines())
             cautions = [line for line in lines if line.startswith("Caution: ")]
             finding = ". ".join([headline, *cautions])
+            if name == MULTIFIDELITY and "slow_model" in runs.attrs:
+                finding = "every statistic, the pairs and the costs"
             if attrs.get("study_sha256") != runs.attrs.get("study_sha256"):
                 finding = "of an earlier text of this study, not of these runs"
             yield subject, finding, f"{name}.html"

@@ -24,7 +24,7 @@ from impactlab.report.convergence import convergence
 from impactlab.report.distribution import regime_entries
 from impactlab.report.explorer import write_explorer
 from impactlab.report.page import Cell, Row, Section, Table, described, motion, pictures, write_page
-from impactlab.report.questions import answers_beside
+from impactlab.report.questions import answers_beside, slow_model_sections
 from impactlab.variables import of_table
 
 _GRID_VALUES = 12  # a longer list of values of a grid is replaced by its range
@@ -51,7 +51,7 @@ def write_report(runs: xr.Dataset, analysis: xr.Dataset, figures_folder: Path, p
     written beside the report where a surrogate is usable. Raises FileNotFoundError when a
     figure is missing, OSError when `path` cannot be written.
     """
-    sections = _sections(runs, analysis)
+    sections = [*slow_model_sections(runs, path.parent), *_sections(runs, analysis)]
     headline, answer, note = entries(runs, analysis)
     placed = [name for section in sections for name in section.figures]
     figures = pictures(figures_folder, placed, analysis)

@@ -23,6 +23,7 @@ from impactlab.study.design import series_sizes
 from impactlab.study.inventory import BOUND_IT, file_stats
 from impactlab.study.schema.consistency import extremes, further_models, key_of
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy, ImpactStudy, Store
+from impactlab.study.schema.readers import slow_study
 from impactlab.study.shard import Array
 from impactlab.validation.errors import Problem, StudyError
 from impactlab.variables import BY_SPHERE, HISTORIES, OF_STRIKES, PROFILES, RESPONSES
@@ -134,9 +135,9 @@ def estimate(study: AnyStudy, folder: Path, workers: int, runs: int = 0) -> Esti
 
     study: with its discretisation, where that is known (see steps.resolved). folder: for its
     results; what they take already counts as free. runs: of its distributions, in place of its own;
-    they keep no series. Of many runs a sample is taken, always the same
-    one; the largest run is sought at the extremes of parameters. Pilot runs of `auto` and the
-    analysis are not included. Raises StudyError where a sampled run is impossible.
+    they keep no series. Of many runs a sample is taken, always the same one; the largest run is
+    sought at the extremes of parameters. Runs of a slow model are included, pilot runs of `auto`
+    and the analysis are not. Raises StudyError where a sampled run is impossible.
     """
     existing = next(
         ancestor for ancestor in (folder, *folder.resolve().parents) if ancestor.exists()
@@ -177,11 +178,21 @@ def estimate(study: AnyStudy, folder: Path, workers: int, runs: int = 0) -> Esti
         doubted = [
             Problem(file, key_of(doubt.name, study.sampling), doubt.reason) for doubt in doubts
         ]
+    seconds = max(float(sampled.mean()) * runs, largest)
+    if study.multifidelity:  # the study's model takes at most as long again as the slow one
+        section = study.multifidelity
+        slow_runs = slow_study(study, section.high)
+        pairs = estimate(slow_runs, folder, workers, section.pairs).seconds
+        seconds += section.budget or 2 * pairs
+        if section.indices:
+            from impactlab.study.multifidelity_indices import number_of_runs
+
+            seconds += float(sampled.mean()) * number_of_runs(parameters, section.pairs)
     answers = _IN_MEMORY * _NUMBER * runs * float(held + parameters)
     return Estimate(
         file=file,
         runs=runs,
-        seconds=max(float(sampled.mean()) * runs, largest),
+        seconds=seconds,
         memory=_PROGRAM + answers + runs * _PER_RUN + working,
         disk=_ON_DISK * _NUMBER * runs * float(stored),
         free=float(disk_usage(existing).free + occupied),

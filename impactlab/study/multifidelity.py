@@ -9,6 +9,7 @@ import logging
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from math import ceil
 from pathlib import Path
 from shlex import quote
@@ -23,7 +24,7 @@ from impactlab.analysis.multifidelity import (
     Multifidelity,
     best_ratio,
 )
-from impactlab.files import write_netcdf
+from impactlab.files import opened, write_netcdf
 from impactlab.methods.runs import usable
 from impactlab.model.checks import integer
 from impactlab.model.cost import A_SECOND
@@ -33,11 +34,16 @@ from impactlab.study import MULTIFIDELITY
 from impactlab.study.design import design
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
+from impactlab.study.multifidelity_indices import (
+    check_independent,
+    number_of_runs,
+    sensitivity,
+    slow_indices,
+)
 from impactlab.study.ownership import study_file
 from impactlab.study.rare_event import ScoreRuns
 from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
-from impactlab.study.schema.readers import study_of_content
-from impactlab.study.schema.yaml_file import read_mapping
+from impactlab.study.schema.readers import slow_study
 from impactlab.study.solvers import solver_named
 from impactlab.types import Floats
 from impactlab.validation.fields import plain
@@ -49,7 +55,8 @@ _MOST_PAIRS = 10_000
 _MOST_RUNS = 20_000  # of the fast model: of more, the mean of a response hardly gains
 _LITTLE = 1.2  # saving below which the fast model is said to be of little use
 STATISTICS = (
-    *("mean", "standard_deviation", "lower_quartile", "median", "upper_quartile"),
+    *("mean", "standard_deviation"),
+    *("percentile_5", "lower_quartile", "median", "upper_quartile", "percentile_95"),
     "exceedance",
 )
 
@@ -70,30 +77,38 @@ def multifidelity(
     study: AnyStudy,
     folder: Path,
     engine: Engine,
-    high: Mapping[str, Any],
+    high: Mapping[str, Any] | None = None,
     *,
     pairs: int = 40,
     runs: int = 0,
     budget: float = 0.0,
+    indices: bool = False,
 ) -> xr.Dataset:
     """Return statistics of a study's responses by a slow model; see il.multifidelity.
 
-    folder: of the study's results. runs: of the fast model; 0: the best number. budget: in s of one
-    core, from which the numbers of pairs and runs follow; 0: none. Runs are kept in
-    `folder`/multifidelity and are not solved again.
+    folder: of the study's results. high: without it, all settings are the study's. runs: of the
+    fast model; 0: the best number. budget: in s of one core, from which the numbers of pairs and
+    runs follow; 0: none. indices: True for Sobol indices. Runs are kept in `folder`/multifidelity
+    and are not solved again.
 
     Raises as ScoreRuns.of and for a slow model that the study cannot have, and ValueError for
     settings out of range.
     """
     owner = "multifidelity"
+    if high is None and (section := study.multifidelity):
+        high, pairs, runs, budget = section.high, section.pairs, section.runs, section.budget
+        indices = section.indices
+    high = high or {}
     pairs = integer(owner, "pairs", pairs, FEWEST_PAIRS)
     runs = integer(owner, "runs", runs, 0)
     if not (np.isfinite(budget) and budget >= 0.0):
         raise ValueError(f"{owner}: budget = {budget!r}: must be positive")
     fast = ScoreRuns.of(study, folder, engine, f"{MULTIFIDELITY}/low")
-    slow_study = _slow_study(study, fast.declared, high)
-    first = design(slow_study, 0, 1).assign_attrs(histories=0, profiles=0)
-    slow = replace(fast, declared=slow_study, first=first, folder=fast.folder.with_name("high"))
+    if indices:
+        check_independent(fast)
+    declared = slow_study(fast.declared, high)
+    first = design(declared, 0, 1).assign_attrs(histories=0, profiles=0)
+    slow = replace(fast, declared=declared, first=first, folder=fast.folder.with_name("high"))
     if not isinstance(study, ImpactStudy) and (budget or not runs):
         raise ValueError(f"{owner}: runs: must be stated, because what functions cost is not known")
     pairs = FEWEST_PAIRS if budget else pairs
@@ -119,9 +134,12 @@ def multifidelity(
         study_file=study_file(study, folder),
         confidence=study.analysis.confidence,
         arguments="".join(f" {quote(f'{name}={plain(value)}')}" for name, value in high.items())
-        + f" --pairs {pairs} --runs {runs}",
+        + f" --pairs {pairs} --runs {runs}{' --indices' * indices}",
         high=", ".join(f"{name} {plain(value)}" for name, value in high.items()),
     )
+    if indices:
+        shares = slow_indices(fast, partial(_outputs, fast), _scores(fast, pairs), outputs[1])
+        dataset, runs = dataset.merge(shares), runs + number_of_runs(scores.shape[1], pairs)
     for name, value, units, meaning in (
         ("pairs", pairs, "1", "runs of the slow model"),
         ("runs", pairs + runs, "1", "runs solved, in all"),
@@ -135,29 +153,17 @@ def multifidelity(
     return dataset
 
 
-def _slow_study(study: AnyStudy, declared: AnyStudy, high: Mapping[str, Any]) -> AnyStudy:
-    """Return the study with other values of parameters, read and checked as its file is.
-
-    declared: with its discretisation. Raises StudyError where it cannot have them, ValueError for
-    none, or for a parameter that is drawn.
-    """
-    if not high:
-        raise ValueError(
-            "multifidelity: high: state what the slow model has in place of the study's, such as "
-            "beam_model=solid elements_per_radius=2, or nodes=601"
-        )
-    content = read_mapping(declared.text, str(declared.path))
-    if isinstance(study, ImpactStudy) and study.auto is not None:
-        content["discretisation"] = plain(declared.discretisation)  # type: ignore[union-attr]
-    for name, value in high.items():
-        if name in declared.sampling.varied:
-            raise ValueError(
-                f"multifidelity: high: {name} is drawn, and both models have the same draws: "
-                "take it out"
-            )
-        entry = {"distribution": "fixed", "value": plain(value)}
-        content["sampling"]["parameters"][name] = entry
-    return study_of_content(declared.name, content, Path("the slow model"))
+def slow_answer(runs: xr.Dataset, folder: Path) -> str:
+    """Return the answer in `folder` on the slow model that the study of the runs asks for."""
+    path = folder / f"{MULTIFIDELITY}.nc"
+    if path.is_file():
+        with opened(path, "multifidelity", indexed=False) as stored:
+            if stored.attrs["study_sha256"] == runs.attrs["study_sha256"]:
+                return str(stored.attrs["answer"])
+    return (
+        f"No answer yet with {runs.attrs['slow_model']}.\n"
+        "Caution: the runs of the slow model are not solved: `impactlab run` solves them."
+    )
 
 
 def _scores(model: ScoreRuns, runs: int) -> Floats:
@@ -210,9 +216,11 @@ def _statistics(
     calls: dict[str, Callable[[], FidelityEstimate]] = {
         "mean": models.mean,
         "standard_deviation": lambda: _root(models.variance()),
+        "percentile_5": lambda: models.quantile(0.05),
         "lower_quartile": lambda: models.quantile(0.25),
         "median": lambda: models.quantile(0.5),
         "upper_quartile": lambda: models.quantile(0.75),
+        "percentile_95": lambda: models.quantile(0.95),
     }
     if limit is not None:
         calls["exceedance"] = lambda: models.exceedance(limit)
@@ -332,9 +340,20 @@ def _answer(result: xr.Dataset) -> str:
         parts.append(f"correlation {float(result['correlation'][row]):.3f}")
         if parts[1:]:
             lines.append(f"{str(response).replace('_', ' ').capitalize()}: {'; '.join(parts)}.")
+    if "slow_index" in result:
+        lines.append(sensitivity(result, leading))
+    return "\n".join(
+        [*lines, *_costs(result, leading, has_mean=bool(stated(result, leading, "mean")))]
+    )
+
+
+def _costs(result: xr.Dataset, leading: int, *, has_mean: bool) -> list[str]:
+    """Return what the fast model saves, the best numbers of runs and a caution, in sentences."""
+    lines = []
+    pairs, runs = int(result["pairs"]), int(result["runs"])
     slow, fast = float(result["slow_seconds"]), float(result["fast_seconds"])
     saving = float(result["saving"].values[leading, 0])
-    if mean:
+    if has_mean:
         alone, spent = ceil(saving * pairs), pairs * slow + (runs - pairs) * fast
         times = f", about {time(alone * slow)} of one core; both models took {time(spent)}"
         lines.append(
@@ -351,7 +370,7 @@ def _answer(result: xr.Dataset) -> str:
         count = int(result["missing"].max())
         most = f" (up to {count} a response)" if worst is FidelityVerdict.MISSING_RUNS else ""
         lines.append(f"Caution: {worst.meaning}{most}.")
-    return "\n".join(lines)
+    return lines
 
 
 def stated(result: xr.Dataset, row: int, statistic: str) -> str:

@@ -119,8 +119,9 @@ def run(
 ) -> None:
     """Price a study, resolve its discretisation, draw and solve its runs; write them to `path`.
 
-    The rows of a table are its runs. runs: its design, where it is drawn already. force: whatever
-    it costs. replace: whatever study has results there. tell: of `resolved`.
+    The rows of a table are its runs. Those of a slow model that the study asks for, and what they
+    tell, are kept beside them (multifidelity.nc). runs: its design, where it is drawn already.
+    force: whatever it costs. replace: whatever study has results there. tell: of `resolved`.
 
     Raises StudyError where a limit is exceeded, for wrong measurements, and as `resolved` and
     `solve`; ValueError as `check_unclaimed`.
@@ -129,7 +130,8 @@ def run(
 
     source = study_file(study, path.parent)
     if runs is not None and (file := runs.attrs.get("study_file")):
-        source = study_file(changed(study, path=study.path.parent / file), path.parent)
+        study = changed(study, path=study.path.parent / file)
+        source = study_file(study, path.parent)
     if not replace:
         check_unclaimed(study, path, source)
     if isinstance(study, TableStudy):
@@ -139,6 +141,10 @@ def run(
     if runs is None:
         runs = design(declared or resolved(study, path.parent, engine, tell) or study)
     solve(runs.assign_attrs(study_file=source), path, engine)
+    if study.multifidelity:
+        from impactlab.study.multifidelity import multifidelity
+
+        multifidelity(study, path.parent, engine)
 
 
 def priced(
@@ -344,6 +350,10 @@ def analyse_runs(
                 for measurement in read_measurements(file, solved)
             ]
             analysis = analysis.merge(compared(solved, analysis, measured))
+        if "slow_model" in solved.attrs:
+            from impactlab.study.multifidelity import slow_answer
+
+            analysis.attrs["slow_model_answer"] = slow_answer(solved, runs.parent)
         write_netcdf(analysis, path, "analysis", *sources)
         for name in ("indices.csv", "indices.nc", "distribution.csv", "surrogate.nc"):
             path.with_name(name).unlink(missing_ok=True)  # perhaps another study's

@@ -103,6 +103,7 @@ def solving(wildcards):
     """Return the sources of the runs; the analysis is one where it decides on number or grid."""
     deciding = ["analysis/**/*.py"] * has(wildcards.study, "growing")
     deciding += ["analysis/convergence/*.py"] * has(wildcards.study, "auto")
+    deciding += ["analysis/multifidelity*.py"] * has(wildcards.study, "multifidelity")
     solid = ["fem3d/**/*.py"] * has(wildcards.study, "fem3d")
     return code(*SOLVER, "study/**/*.py", *deciding, *solid)
 

@@ -1,7 +1,7 @@
 # From a study file to its solved runs, in one process: programs take longer to load than most steps take.
 
 
-# Pilot runs, design and refinement come with them (resolution.nc, design.nc, refinement.nc), and shards,
+# Pilot runs, design and refinement come with them (resolution.nc, design.nc, refinement.nc, multifidelity.nc), and shards,
 # which are no outputs: Snakemake would remove them when a job fails.
 rule runs:
     input:

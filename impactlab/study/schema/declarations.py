@@ -12,6 +12,7 @@ from pydantic import (
     Field,
     PlainValidator,
     StrictBool,
+    StrictStr,
     ValidationInfo,
     WrapValidator,
     create_model,
@@ -171,6 +172,28 @@ class Analysis(Intervals):
     failed_runs: Annotated[str, one_of("policy", ("fail", "impute"))] = "fail"
 
 
+_Seconds: Any = quantity("s")
+
+
+class SlowModel(FileSection):
+    """The key `multifidelity`: few runs of a slow model beside many of the study's (docs).
+
+    high: values of the slow model's parameters in place of the study's. pairs: number of its runs,
+    and runs of the study's model; 0: the best number. budget: time of one core in s, in place of
+    pairs; 0: none. indices: True for Sobol indices, which take further runs of the study's model.
+    """
+
+    high: Annotated[dict[StrictStr, Any], Field(min_length=1)]
+    pairs: Annotated[Whole, Field(ge=20, le=10_000)] = 40
+    runs: Annotated[Whole, Field(ge=0, le=1_000_000)] = 0
+    budget: Annotated[_Seconds, Field(ge=0)] = 0.0
+    indices: StrictBool = False
+
+    def __str__(self) -> str:
+        """Return the values of the slow model in words."""
+        return ", ".join(f"{name} {value}" for name, value in self.high.items())
+
+
 def read_limits(data: Any, info: ValidationInfo) -> dict[str, float]:
     """Read limits by response, in SI units; the context has those that the study may have."""
     units: Mapping[str, str] = info.context["responses"]  # type: ignore[index]
@@ -195,6 +218,7 @@ class StudyFile(Heading):
     store: Store = Field(default_factory=Store)
     analysis: Analysis | None = None
     measurements: Names = ()
+    multifidelity: SlowModel | None = None
 
 
 @dataclass(frozen=True)
@@ -226,7 +250,8 @@ class StudyBase(Declared):
     """The part of a study of runs that does not depend on its solver.
 
     responses: names of the responses of each run; analyses: names out of ANALYSES. limits: by
-    response, in SI units. analysis: settings of sensitivity indices and intervals.
+    response, in SI units. analysis: settings of sensitivity indices and intervals. multifidelity: a
+    slow model to tell of, too.
     """
 
     sampling: Grid | RandomSample
@@ -234,6 +259,7 @@ class StudyBase(Declared):
     analyses: tuple[str, ...]
     limits: Mapping[str, float]
     analysis: Analysis
+    multifidelity: SlowModel | None = field(default=None, kw_only=True)
 
     def attributes(self) -> dict[str, Any]:
         """Return the attributes of designs that do not depend on the solver."""
@@ -245,6 +271,8 @@ class StudyBase(Declared):
             attrs |= self.analysis.model_dump(exclude=unused) | sampling.settings
         if self.limits:
             attrs |= {"limited": list(self.limits), "limits": list(self.limits.values())}
+        if self.multifidelity:
+            attrs |= {"slow_model": str(self.multifidelity)}
         return attrs
 
     @property

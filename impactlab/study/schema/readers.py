@@ -1,6 +1,6 @@
 """Readers of study files: of impacts, of a test function, and of checks."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any
@@ -21,13 +21,14 @@ from impactlab.study.schema.declarations import (
     FunctionStudy,
     ImpactStudy,
     Limits,
+    SlowModel,
     StudyFile,
     Verification,
 )
 from impactlab.study.schema.table_file import TableStudy, table_study
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source, text_of
 from impactlab.validation.errors import Problem, StudyError, unknown
-from impactlab.validation.fields import Heading, Names, names, validated
+from impactlab.validation.fields import Heading, Names, names, plain, validated
 from impactlab.variables import FLAGS, SCALARS, VARIABLES
 from impactlab.verification.functions import FUNCTIONS
 
@@ -80,6 +81,56 @@ def study_of_content(name: str, content: dict[str, Any], path: Path) -> AnyStudy
     return _of_runs(Source(name, path, text_of(content), content))
 
 
+def slow_study(study: AnyStudy, high: Mapping[str, Any]) -> AnyStudy:
+    """Return the study with other values of parameters, read and checked as its file is.
+
+    study: with its discretisation. Raises StudyError where it cannot have them, ValueError for
+    none, or for a parameter that is drawn.
+    """
+    if not high:
+        raise ValueError(
+            "multifidelity: high: state what the slow model has in place of the study's, such as "
+            "beam_model=solid elements_per_radius=2, or nodes=601"
+        )
+    content = read_mapping(study.text, str(study.path))
+    content.pop("multifidelity", None)
+    section = content.get("discretisation")
+    if isinstance(study, ImpactStudy) and (section == "auto" or "auto" in (section or ())):
+        content["discretisation"] = plain(study.discretisation)
+    for name, value in high.items():
+        if name in study.sampling.varied:
+            raise ValueError(
+                f"multifidelity: high: {name} is drawn, and both models have the same draws: "
+                "take it out"
+            )
+        entry = {"distribution": "fixed", "value": plain(value)}
+        content["sampling"]["parameters"][name] = entry
+    return study_of_content(study.name, content, Path("the slow model"))
+
+
+def _check_slow_model(study: AnyStudy) -> None:
+    """Raise StudyError for a slow model that the study cannot have."""
+    if (section := study.multifidelity) is None:
+        return
+    path, key = str(study.path), "multifidelity"
+    if isinstance(study.sampling, Grid):
+        reason = (
+            "draws from distributions, which a grid has not: use another method, or take it out"
+        )
+        raise StudyError(Problem(path, key, reason))
+    if isinstance(study, FunctionStudy) and not section.runs:
+        reason = "must be stated, because what functions cost is not known"
+        raise StudyError(Problem(path, f"{key}.runs", reason))
+    try:
+        slow_study(study, section.high)
+    except StudyError as error:
+        reasons = [f"{problem.key}: {problem.reason}" for problem in error.args]
+        raise StudyError(*(Problem(path, f"{key}.high", reason) for reason in reasons)) from None
+    except ValueError as error:
+        reason = str(error).removeprefix("multifidelity: high: ")
+        raise StudyError(Problem(path, f"{key}.high", reason)) from None
+
+
 def _of_runs(source: Source) -> AnyStudy:
     declared = _READERS[_kind(source)](source)
     if isinstance(declared, Verification):
@@ -102,9 +153,9 @@ def describe(path: Path) -> dict[str, Any]:
 
     traits: "checks" (a verification), "table" (runs made elsewhere, in the file `table`), "auto"
     (its discretisation is to be found), "sample" (its impacts are drawn), "sobol" (by Sobol's
-    sequence), "growing" (until its intervals are narrow), and those of the wings' models that some
-    runs have. measurements: its files of them, if any. Of a file that is wrong: name, no traits,
-    and `error`.
+    sequence), "growing" (until its intervals are narrow), "multifidelity" (with a slow model), and
+    those of the wings' models that some runs have. measurements: its files of them, if any. Of a
+    file that is wrong: name, no traits, and `error`.
     """
     try:
         study = read_any(path)
@@ -119,9 +170,12 @@ def describe(path: Path) -> dict[str, Any]:
         "sobol": impacts and isinstance(sampling, Sobol),
     }
     listed = [name for name, has in traits.items() if has]
-    listed += (
-        [model.trait for model in further_models(study)] if isinstance(study, ImpactStudy) else []
-    )
+    if isinstance(study, ImpactStudy):
+        models = further_models(study)
+        if study.multifidelity:
+            listed += ["multifidelity"]
+            models += further_models(of_impacts(slow_study(study, study.multifidelity.high)))
+        listed += dict.fromkeys(model.trait for model in models)
     summary = {"name": study.name, "title": study.title, "size": study.size, "traits": listed}
     if isinstance(study, TableStudy):
         return summary | {"traits": ["table"], "table": str(study.csv)}
@@ -174,7 +228,9 @@ def _study(source: Source) -> ImpactStudy:
         raise StudyError(Problem(path, "python_responses", reason))
     fields: dict[str, Any] = dict(file) | {"discretisation": grid, "auto": auto, "python": python}
     fields["analysis"] = file.analysis or Analysis()
-    return ImpactStudy(name=source.name, path=source.path, text=source.text, **fields)
+    study = ImpactStudy(name=source.name, path=source.path, text=source.text, **fields)
+    _check_slow_model(study)
+    return study
 
 
 def _python_responses(responses: Any, path: str) -> tuple[dict[str, str], dict[str, str]]:
@@ -221,6 +277,7 @@ def _function_study(source: Source) -> FunctionStudy:
     study = FunctionStudy(name=source.name, path=source.path, text=source.text, **fields)
     if problems := [Problem(path, *reason) for reason in limit_reasons(study)]:
         raise StudyError(*problems)
+    _check_slow_model(study)
     return study
 
 
@@ -277,6 +334,7 @@ class FunctionFile(Heading):
     sampling: Annotated[Grid | RandomSample, PlainValidator(read_sampling)]
     limits: Limits = Field(default_factory=dict)
     analysis: Analysis = Field(default_factory=Analysis)
+    multifidelity: SlowModel | None = None
 
 
 class _PythonFunctionFile(FunctionFile):

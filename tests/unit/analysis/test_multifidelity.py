@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import impactlab as il
+from impactlab.analysis.multifidelity_indices import first_order, slow_index, total_order
 
 VARIANCE = 0.5 * (1 + 0.1 * np.pi**4 / 5) ** 2 + 49 / 8 + 0.08 * np.pi**8 / 225
 RUNS, LOW_RUNS, REPETITIONS = 40, 400, 150
@@ -67,9 +68,67 @@ def test_quantiles_are_covered_and_as_accurate_as_they_say(probability):
     assert plain / values.var() == pytest.approx(saving, rel=0.5)
 
 
+@pytest.mark.parametrize(("probability", "ratio"), [(0.05, 0.8), (0.95, 1.05)])
+def test_outer_quantiles_are_covered_and_save_runs_where_the_models_agree(probability, ratio):
+    x1, x2, x3 = np.random.default_rng(0).uniform(-np.pi, np.pi, (3, 1_000_000))
+    exact = np.quantile(np.sin(x1) * (1 + 0.1 * x3**4) + 7 * np.sin(x2) ** 2, probability)
+    pairs = [ishigami_pair(seed, 0.97, runs=100, low_runs=800) for seed in range(60)]
+    quantiles = [il.Multifidelity(**pair).quantile(probability) for pair in pairs]
+    covered = np.mean([q.interval[0] < exact < q.interval[1] for q in quantiles])
+    assert covered > 0.86  # 95 % less 3 standard deviations of 60 repetitions
+    plain = np.std([np.quantile(pair["high"], probability) for pair in pairs])
+    assert np.std([quantile.value for quantile in quantiles]) < ratio * plain
+
+
+def indices_of_pairs(seed, correlation, pairs=40, base_samples=1000):
+    """Return indices of Ishigami's function by a copy whose error is an interaction.
+
+    In the order x1, x2, x3 of first order, then of total order.
+    """
+    rng = np.random.default_rng([8, seed])
+    scale = np.sqrt(4 * VARIANCE * (correlation**-2 - 1))
+
+    def slow(x):
+        return np.sin(x[..., 0]) * (1 + 0.1 * x[..., 2] ** 4) + 7 * np.sin(x[..., 1]) ** 2
+
+    def fast(x):
+        return 2 + 1.5 * (slow(x) + scale * np.cos(x[..., 1]) * np.sin(2 * x[..., 2]))
+
+    first, others = rng.uniform(-np.pi, np.pi, (2, base_samples, 3))
+    points, *drawn = rng.uniform(-np.pi, np.pi, (9, pairs, 3))
+    drawn = np.array(drawn)
+    outputs, low, high = [fast(first), fast(others)], fast(points), slow(points)
+    variance = np.var(outputs, ddof=1)
+    indices = [[], []]
+    for column in range(3):
+        mixed, alone, without = first.copy(), drawn.copy(), np.tile(points, (8, 1, 1))
+        mixed[:, column], alone[..., column] = others[:, column], points[:, column]
+        without[..., column] = drawn[..., column]
+        parts = first_order(*outputs, fast(mixed), fast(alone))
+        indices[0].append(slow_index(low, high, variance, parts, 0.95))
+        parts = total_order(*outputs, fast(mixed), fast(without), low)
+        indices[1].append(slow_index(low, high, variance, parts, 0.95))
+    return np.array(indices).reshape(6, 3)
+
+
+@pytest.mark.parametrize(("correlation", "width"), [(0.9, 0.6), (0.99, 0.25), (0.9999, 0.21)])
+def test_indices_of_the_slow_model_are_covered(correlation, width):
+    shares = np.array([0.5 * (1 + 0.1 * np.pi**4 / 5) ** 2, 49 / 8, 0.08 * np.pi**8 / 225])
+    exact = np.array([*shares[:2], 0.0, shares[0] + shares[2], *shares[1:]]) / VARIANCE
+    indices = np.array([indices_of_pairs(seed, correlation) for seed in range(60)])
+    covered = (indices[..., 1] <= exact) & (exact <= indices[..., 2])
+    assert covered.mean(axis=0).min() > 0.86
+    assert ((indices[..., 1] <= indices[..., 0]) & (indices[..., 0] <= indices[..., 2])).all()
+    assert np.median(indices[..., 2] - indices[..., 1], axis=0).max() < width
+
+
 @pytest.mark.parametrize(
     ("probability", "message"),
-    [(0.9, r"must be from 0\.25 to 0\.75"), (0.25, "7.5 of 30 runs of high are expected")],
+    [
+        (0.96, r"must be from 0\.05 to 0\.95"),
+        (0.25, "7.5 of 30 runs of high are expected"),
+        (0.9, "3 of 30 runs of high are expected on one side, 5 are needed"),
+    ],
 )
 def test_a_quantile_whose_interval_is_not_sound_is_refused(probability, message):
     pair = ishigami_pair(1, 0.9, runs=30)

@@ -9,6 +9,7 @@ from scipy.special import ndtr
 import impactlab as il
 from impactlab.fem3d.solver import solve
 from impactlab.model.quantities import si
+from impactlab.study.schema.readers import describe
 
 
 def power_of(x, noise, power):
@@ -114,6 +115,75 @@ def test_the_report_of_the_study_tells_the_answer(tmp_path):
     assert 'href="multifidelity.html"' in page
 
 
+def test_a_study_with_a_slow_model_opens_with_its_answer(tmp_path):
+    powers = study(tmp_path, multifidelity={"high": {"power": 2}, "pairs": 30, "runs": 500})
+    runs = powers.run(workers=1)
+    other = il.multifidelity(study(tmp_path / "other"), {"power": 2}, pairs=30, runs=500, workers=1)
+    headline = other.answer.splitlines()[0]
+    assert il.answers(runs, powers.analyse())[0] == headline
+    page = unescape(powers.report().read_text("utf-8")).replace("\xa0", " ")
+    assert page.index(headline.removesuffix(".")) < page.index("The study's own model")
+    assert page.index("Statistics of the slow model") < page.index('<section id="results"')
+    assert (tmp_path / "power" / "multifidelity.html").is_file()
+    section = il.multifidelity(powers, workers=1)  # all settings are the study's
+    np.testing.assert_array_equal(section.estimate, other.estimate)
+    (tmp_path / "power" / "multifidelity.nc").unlink()
+    assert "the runs of the slow model are not solved" in " ".join(
+        il.answers(runs, powers.analyse())
+    )
+
+
+def test_an_automatic_grid_is_that_of_the_fast_model_alone(tmp_path):
+    section = {"high": {"nodes": 101, "scheme": "leapfrog"}, "pairs": 20, "runs": 40}
+    auto = {"scheme": "modal", "auto": {"tolerance": 0.1, "responses": ["peak_force"]}}
+    impact = impacts(tmp_path, discretisation=auto, multifidelity=section, duration="1 ms")
+    assert impact.estimate(workers=1).seconds > impacts(tmp_path).estimate(workers=1).seconds
+    text = impact.declared.text
+    (tmp_path / "auto.yaml").write_text(text)
+    assert describe(tmp_path / "auto.yaml")["traits"] == ["auto", "sample", "multifidelity"]
+
+
+def test_indices_are_those_of_the_slow_model(tmp_path):
+    """The noise hardly matters to the slow model, and half as much again to the fast one."""
+
+    def linear(x, noise, power):
+        return power * x + noise + 0.02 * x**2
+
+    parameters = {"x": il.Normal(0, 1), "noise": il.Normal(0, 1), "power": 2.5}
+    sampling = il.Pawn(samples=128, parameters=parameters)
+    linears = [
+        study(tmp_path / name, linear, sampling=sampling, limits=None) for name in ("one", "two")
+    ]
+    results = [
+        il.multifidelity(linears[row], {"power": 3}, runs=500, indices=True, workers=row + 1)
+        for row in range(2)
+    ]
+    np.testing.assert_array_equal(results[0].slow_index, results[1].slow_index)
+    for parameter, exact in (("x", 0.9), ("noise", 0.1)):
+        for order in ("first_order", "total_order"):
+            index = results[0].slow_index.sel(parameter=parameter, order=order).values[0]
+            assert index[1] < exact < index[2]
+            assert index[2] - index[1] < 0.15
+    assert "Sensitivity: the value scatters with x 9" in results[0].answer
+    page = (tmp_path / "one" / "power" / "multifidelity.html").read_text("utf-8")
+    assert "Sobol indices of the slow model" in page
+
+
+def test_indices_are_refused_where_runs_have_no_answer_or_parameters_correlate(tmp_path):
+    result = il.multifidelity(
+        study(tmp_path, sometimes_failing), {"power": 2}, runs=500, indices=True, workers=1
+    )
+    assert result.slow_index.isnull().all()
+    missing = int(result.slow.isnull().sum())
+    assert f"no indices of the value: {missing} runs have no answer" in result.answer
+    parameters = {"x": il.Uniform(0, 1), "noise": il.Normal(0, 1), "power": 1.7}
+    sampling = il.Pawn(samples=128, parameters=parameters, correlations=[("x", "noise", 0.5)])
+    with pytest.raises(il.StudyError, match="assume independent parameters"):
+        il.multifidelity(
+            study(tmp_path / "two", sampling=sampling), {"power": 2}, runs=500, indices=True
+        )
+
+
 def test_pairs_without_an_answer_are_left_out_and_counted(tmp_path):
     result = il.multifidelity(study(tmp_path, sometimes_failing), {"power": 2}, runs=500, workers=1)
     missing = int(result.slow.isnull().sum())
@@ -178,6 +248,32 @@ def test_three_dimensional_runs_are_those_at_the_first_draws(tmp_path):
 def test_what_cannot_be_estimated_is_refused(tmp_path, changes, high, settings, reason):
     with pytest.raises(ValueError, match=reason):
         il.multifidelity(study(tmp_path, **changes), high, **({"runs": 500} | settings), workers=1)
+
+
+@pytest.mark.parametrize(
+    ("section", "reason"),
+    [
+        ({}, "multifidelity.high: is required"),
+        ({"high": {}}, "multifidelity.high: is empty"),
+        ({"high": {"nodes": 4}}, r"multifidelity.high: sampling.parameters.nodes.value: "),
+        ({"high": {"velocity": 1}}, "multifidelity.high: velocity is drawn"),
+        ({"high": FINE, "pairs": 5}, "multifidelity.pairs = 5: must be at least 20"),
+        ({"high": FINE, "budget": "1 m"}, "multifidelity.budget = '1 m'"),
+        ({"high": FINE, "pair": 40}, "multifidelity.pair = 40: unknown key; did you mean"),
+    ],
+)
+def test_a_wrong_slow_model_of_a_study_is_refused_at_its_key(tmp_path, section, reason):
+    with pytest.raises(il.StudyError, match=reason):
+        impacts(tmp_path, multifidelity=section)
+
+
+def test_a_slow_model_needs_a_sample_and_a_function_the_number_of_runs(tmp_path):
+    section = {"high": {"power": 2}}
+    with pytest.raises(il.StudyError, match=r"multifidelity\.runs: must be stated"):
+        study(tmp_path, multifidelity=section)
+    grid = il.Grid(parameters={"x": [1, 2], "noise": [3], "power": [1]})
+    with pytest.raises(il.StudyError, match="multifidelity: draws from distributions"):
+        study(tmp_path, sampling=grid, limits=None, multifidelity=section | {"runs": 500})
 
 
 def test_values_that_a_study_cannot_have_are_refused_at_their_key(tmp_path):
