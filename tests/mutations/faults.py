@@ -217,6 +217,18 @@ FAULTS = (
         "negative > 1",
     ),
     Fault(
+        "strikes: half a beam at rest does not buckle on its foundation",
+        "settle_stretch.py",
+        "return _factor(bands, _rows(grid, PINNED), 0) > 0",
+        "return False",
+    ),
+    Fault(
+        "strikes on the moving beam: what further spheres have given left out",
+        "leapfrog.py",
+        "events.ledger += given(state)",
+        "events.ledger += 0.0 * given(state)",
+    ),
+    Fault(
         "box, I-section: the core's share of the plastic modulus left out",
         "../model/shapes.py",
         "0.25 * (self.width * (self.depth * self.depth) - b * (h * h))",

@@ -109,8 +109,9 @@ def test_a_half_beam_that_would_buckle_on_its_foundation_is_remarked(depth, unst
         beam_model="von_karman",
         contact="hertz",
         gravity=0.0,
+        strikes=2,  # after which the shape at rest is kept
     )
-    run = run_dataset(impact, il.Discretisation(nodes=NODES), duration=0.03, samples=2, strikes=1)
+    run = il.simulate(impact, il.Discretisation(nodes=NODES), duration=0.03, samples=2)
     dx, E, w = beam.span / (NODES - 1), beam.material.youngs_modulus, run.deflection.values
     _, area = beam.section.cut("lobatto", run.z.size)
     longer = np.trapezoid(run.plastic_strain.values @ area, dx=dx) / area.sum()
@@ -121,5 +122,4 @@ def test_a_half_beam_that_would_buckle_on_its_foundation_is_remarked(depth, unst
     values, shapes = np.linalg.eigh(stiffness + bed * np.eye(NODES - 2))
     odd = np.abs(shapes + shapes[::-1]).max(axis=0) < 1e-6
     assert (values[odd].min() < 0.0) == unstable
-    assert values[odd].min() == values.min()
     assert bool(run.remarks.item() & UNSTABLE_REST) == unstable

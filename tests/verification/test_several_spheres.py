@@ -223,8 +223,8 @@ OPTIONS = {
     },
     "strikes": {"strikes": 3},
     "modal strikes": {"strikes": 3},
-    "strikes on the moving beam": {"strikes": 3, "strike_interval": 0.0263},
-    "modal strikes on the moving beam": {"strikes": 3, "strike_interval": 0.0263},
+    "strikes on the moving beam": {"strikes": 3, "strike_interval": 0.031},
+    "modal strikes on the moving beam": {"strikes": 3, "strike_interval": 0.031},
     "all": {
         "beam_model": "timoshenko",
         "contact_prestress": "bending",
