@@ -135,7 +135,7 @@ def _touch_down(model: BeamModel) -> Callable[..., tuple[float, float]]:
 def _taking_away(model: BeamModel) -> Callable[..., int]:
     """Return a function that takes the spheres away between two strikes on the moving beam."""
     leaves = departure(model)
-    given = None if model.further is None else model.further.given
+    work = None if model.further is None else model.further.work
     others_away = None if model.further is None else model.further.take_away
 
     @compiled
@@ -161,8 +161,8 @@ def _taking_away(model: BeamModel) -> Callable[..., int]:
         if step == end:
             spent = 0.5 * case.sphere_mass * (case.velocity**2 - v_s * v_after)
             events.ledger = energy + spent + case.sphere_mass * case.gravity * w_s
-            if given is not None:
-                events.ledger += given(state)
+            if work is not None:
+                events.ledger += work(state)
         if step == steps and interval > 0 and leaves(state, events):
             events.w_max = _AWAY
             if others_away is not None:

@@ -40,13 +40,13 @@ from impactlab.solver.sphere_table import (
     again,
     balance,
     brought,
-    given,
     have_touched,
     join,
     leave,
     rise,
     steps_alone,
     take_away,
+    work,
 )
 from impactlab.solver.state import BeamModel, Flight, FurtherSpheres, State
 from impactlab.solver.types import CONTACT_PATCH, Array, Record
@@ -364,6 +364,6 @@ def with_spheres(model: BeamModel) -> BeamModel:
         flight=_leaps(model),
         take=None if plain_take is None else take,
         push=None,
-        further=FurtherSpheres(join, _reads(model), brought, rise, leave, take_away, given, again),
+        further=FurtherSpheres(join, _reads(model), brought, rise, leave, take_away, work, again),
         **_touched(model),
     )

@@ -155,7 +155,7 @@ def balance(state: State, k: int) -> tuple[float, float]:
 
 
 @compiled
-def given(state: State) -> float:
+def work(state: State) -> float:
     """Return what the spheres have given to the beam in this strike (J)."""
     total = 0.0
     for k in range(state.extra.motions.size):

@@ -46,7 +46,7 @@ class FurtherSpheres(NamedTuple):
     state, case, answer, answers): fill in their answers, and what they add to the run's. brought(
     state): the kinetic energy (J) with which those came that have touched the beam. rise(state):
     how far their kinks raise the struck node (m). leave(state): whether all that came move away.
-    take_away(state): take them away, before the beam is struck again while it moves; given(state):
+    take_away(state): take them away, before the beam is struck again while it moves; work(state):
     what they have given to the beam by then (J). again(state, strike): let them come again, once so
     many strikes are over.
     """
@@ -57,7 +57,7 @@ class FurtherSpheres(NamedTuple):
     rise: Callable[..., float]
     leave: Callable[..., bool]
     take_away: Callable[..., None]
-    given: Callable[..., float]
+    work: Callable[..., float]
     again: Callable[..., None]
 
 

@@ -225,8 +225,8 @@ FAULTS = (
     Fault(
         "strikes on the moving beam: what further spheres have given left out",
         "leapfrog.py",
-        "events.ledger += given(state)",
-        "events.ledger += 0.0 * given(state)",
+        "events.ledger += work(state)",
+        "events.ledger += 0.0 * work(state)",
     ),
     Fault(
         "box, I-section: the core's share of the plastic modulus left out",
