@@ -157,6 +157,11 @@ WARNINGS: dict[str, tuple[int, str]] = {
         "with its plastic strains held, the beam has a second stable shape at rest, bowed the "
         "other way: it is put to rest in that of least energy, and a swing through is not followed",
     ),
+    "unstable_rest": (
+        outputs.UNSTABLE_REST,
+        "plastic strains compress the beam at rest, and on this foundation it would buckle into an "
+        "antisymmetric shape: it is put to rest in a symmetric one, which is not stable",
+    ),
     "skin_may_give": (
         outputs.SKIN_MAY_GIVE,
         "the contact radius is above a fifth of the outer layer's thickness, and the contact law "

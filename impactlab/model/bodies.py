@@ -76,8 +76,6 @@ def spheres_text(impact: Any) -> str | None:
     end = "with further_spheres: change it, or leave them out"
     model, needed = impact.beam_model, f"must be {' or '.join(WAVE_MODELS)} {end}"
     require(np.isin(model, WAVE_MODELS), "Impact", "beam_model", model, needed)
-    interval = impact.strike_interval
-    require(interval is None, "Impact", "strike_interval", interval, f"must be left out {end}")
     return ", ".join(" ".join(map(repr, row)) for row in rows)
 
 

@@ -124,7 +124,12 @@ def case_table(
         if refused.any():
             row = int(refused.argmax())
             run = f"run {first_run + row}: " if varied else ""
-            stated = engineering(float(cases[name][row]), PARAMETERS[name].units)
+            entry, value = PARAMETERS[name], cases[name][row]
+            stated = (
+                repr(entry.choices[value])
+                if entry.choices
+                else engineering(float(value), entry.units)
+            )
             raise ValueError(f"{run}{name} = {stated}: {reason}")
     _check_further(cases, "run {}: " if varied else "", first_run)
     between = cases["strike_position"] * (cases["nodes"] - 1)

@@ -122,9 +122,8 @@ class Impact:
         Further spheres like `sphere`, at most 8: the `strike_position` of each, which no other has,
         its `velocity`, and its `delay` (by default 0), the time from the first sphere's touch to
         its own; or rows of these in SI. Scalar responses are those of the first sphere. With
-        several strikes all come again in each. They need a beam model whose nodes move and no
-        `strike_interval`, and by scheme "modal" a point load (solver/several_spheres.py). Kept as
-        text, "0.25 3.0 0.0005".
+        several strikes all come again in each. They need a beam model whose nodes move, and by
+        scheme "modal" a point load (solver/several_spheres.py). Kept as text, "0.25 3.0 0.0005".
 
     Raises
     ------

@@ -15,8 +15,8 @@ from impactlab.solver.contact import prestress, rate
 from impactlab.solver.contact_patch import contact_radius
 from impactlab.solver.fibre_plasticity import catch_up
 from impactlab.solver.jit import compiled, inlined
-from impactlab.solver.responses import sphere_leaves
 from impactlab.solver.state import BeamModel, Flight, State
+from impactlab.solver.strikes import departure
 from impactlab.solver.types import CONTACT_PATCH, Array, Record
 
 _AUDITS = 500
@@ -132,32 +132,45 @@ def _touch_down(model: BeamModel) -> Callable[..., tuple[float, float]]:
     return touch_down
 
 
-@compiled
-def _take_away(
-    case: Record,
-    events: Record,
-    sphere: tuple[float, float, float, float],
-    v_mid: float,
-    energy: float,
-    step: int,
-    steps: int,
-    end: int,
-    interval: int,
-) -> int:
-    """Take the sphere away once it has left, `steps` after it came; return the last step.
+def _taking_away(model: BeamModel) -> Callable[..., int]:
+    """Return a function that takes the spheres away between two strikes on the moving beam."""
+    leaves = departure(model)
+    work = None if model.further is None else model.further.work
+    others_away = None if model.further is None else model.further.take_away
 
-    sphere, energy: see _audit. v_mid: of the struck node (m/s). end: the last step so far.
-    """
-    w_s, v_s, v_after, _ = sphere
-    if step <= steps:
-        events.v_s, events.v_mid = v_s, v_mid
-    if step == end:
-        spent = 0.5 * case.sphere_mass * (case.velocity**2 - v_s * v_after)
-        events.ledger = energy + spent + case.sphere_mass * case.gravity * w_s
-    if step == steps and interval > 0 and sphere_leaves(events):
-        events.w_max = _AWAY
-        return max(interval - 1, steps)
-    return end
+    @compiled
+    def take_away(
+        case: Record,
+        state: State,
+        events: Record,
+        sphere: tuple[float, float, float, float],
+        v_mid: float,
+        energy: float,
+        step: int,
+        steps: int,
+        end: int,
+        interval: int,
+    ) -> int:
+        """Take spheres away that have left, `steps` after the first came; return the last step.
+
+        sphere, energy: see _audit. v_mid: of the struck node (m/s). end: the last step so far.
+        """
+        w_s, v_s, v_after, _ = sphere
+        if step <= steps:
+            events.v_s, events.v_mid = v_s, v_mid
+        if step == end:
+            spent = 0.5 * case.sphere_mass * (case.velocity**2 - v_s * v_after)
+            events.ledger = energy + spent + case.sphere_mass * case.gravity * w_s
+            if work is not None:
+                events.ledger += work(state)
+        if step == steps and interval > 0 and leaves(state, events):
+            events.w_max = _AWAY
+            if others_away is not None:
+                others_away(state)
+            return max(interval - 1, steps)
+        return end
+
+    return take_away
 
 
 def _audit(model: BeamModel) -> Callable[..., float]:
@@ -254,6 +267,7 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
     move_beam, mid_curvature, spread = model.step, model.curvature, model.spread
     flight_stride, fly = model.flight_stride, None if model.flight is None else _leaps(model.flight)
     touch, touch_down, imbalance = contact_of(model, extended), _touch_down(model), _audit(model)
+    take_away = _taking_away(model)
     rise = None if model.further is None else model.further.rise
 
     @inlined
@@ -324,7 +338,9 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
                 events.energy_error = max(events.energy_error, error)
                 if not error < 1.0:
                     return -1
-                end = _take_away(case, events, sphere, u_mid / dt, rest, step, steps, end, interval)
+                end = take_away(
+                    case, state, events, sphere, u_mid / dt, rest, step, steps, end, interval
+                )
                 ahead += _AWAY if end > step == steps else 0.0
             w_s, v_s, now = w_s + dt * v_after, v_after, 1 - now
             step += 1

@@ -48,6 +48,8 @@ NO_SHAKEDOWN = 8192
 NOT_STEADY = 16384
 # A beam whose plastic strains let it rest in a second shape, too.
 SECOND_REST = 32768
+# Half a beam whose rest is symmetric, while the whole one would buckle.
+UNSTABLE_REST = 65536
 
 SHORT_PAUSE = 0.05
 """Pauses shorter than this share of the first contact until then do not end it."""

@@ -19,12 +19,16 @@ way. A beam that swings through to that one while it comes to rest is not follow
 and T. X. Yu, J. Appl. Mech. 52 (1985) 517, recalled), but remarked: below the buckling load the
 axial force adds g'(N) < 0 to the stiffness, which makes up for one negative pivot and no more. g is
 concave where there is one, so that its largest value tells whether such a root exists.
+
+On a foundation the first buckling shape may be antisymmetric. Half a beam has no such shape: it may
+come to rest where the whole one would buckle on, which is remarked, too.
 """
 
 import math
 
 from impactlab.solver.beam import CLAMPED, PINNED, SPRUNG, SYMMETRIC, BeamGrid, is_end
 from impactlab.solver.jit import compiled
+from impactlab.solver.outputs import SECOND_REST, UNSTABLE_REST
 from impactlab.solver.settle import rest_nodes
 from impactlab.solver.state import State
 from impactlab.solver.types import Array
@@ -211,6 +215,13 @@ def _steepness(w: Array, bands: Array, grid: BeamGrid) -> float:
 
 
 @compiled
+def _turns(bands: Array, M_0: Array, EI: float, N: float, bed: float, grid: BeamGrid) -> bool:
+    """Return whether N (N) buckles half a beam into an antisymmetric shape, its middle pinned."""
+    _assemble(bands, M_0, EI, N, bed, grid, PINNED)
+    return _factor(bands, _rows(grid, PINNED), 0) > 0
+
+
+@compiled
 def has_second_rest(
     w: Array,
     bands: Array,
@@ -223,14 +234,14 @@ def has_second_rest(
 ) -> bool:
     """Return whether a beam with held ends has a second stable shape, its plastic strains held.
 
-    w: room, (last + 3). bands: room, (5, last + 3). The others: see static_stretch. Of a half beam
-    the pivots of antisymmetric shapes, whose middle is as if pinned, have to be positive.
+    w: room, (last + 3). bands: room, (5, last + 3). The others: see static_stretch. Half a beam
+    must not buckle into an antisymmetric shape there.
     """
     softness, longer = _lengths(N_0, EA, grid)
     low, high = -longer / softness, 0.0
     if low >= high:
         return False
-    rows, pinned = _rows(grid, grid.right), _rows(grid, PINNED)
+    rows = _rows(grid, grid.right)
     _assemble(bands, M_0, EI, low, bed, grid, grid.right)
     if _factor(bands, rows, 0) == 0:  # no force below the buckling load is possible
         return False
@@ -238,15 +249,12 @@ def has_second_rest(
         N = 0.5 * (low + high)
         if not low < N < high:
             break
-        turned = 0
-        if grid.right == SYMMETRIC:
-            _assemble(bands, M_0, EI, N, bed, grid, PINNED)
-            turned = _factor(bands, pinned, 0)
+        turned = grid.right == SYMMETRIC and _turns(bands, M_0, EI, N, bed, grid)
         _assemble(bands, M_0, EI, N, bed, grid, grid.right)
         negative = _factor(bands, rows, 1)
         if negative == 0:
             high = N
-        elif negative > 1 or turned > 0:
+        elif negative > 1 or turned:
             low = N
         else:
             _substitute(w, bands, rows)
@@ -258,17 +266,21 @@ def has_second_rest(
 
 
 @compiled
-def rests_twice(state: State) -> bool:
-    """Return whether a beam that was put to rest has a second stable shape."""
+def rest_remarks(state: State) -> int:
+    """Return the bits of remarks on the shape in which a beam was put to rest."""
     _, section, grid, beam, plastic, stretch = state
     if not (stretch.held[0] and stretch.held[1]):
-        return False
+        return 0
     EI, EA, bed = section.stiffness, stretch.stiffness, stretch.resistance.bed
     bed *= grid.mu / grid.dt**2
     w, bands = beam.w[1], stretch.bands
-    twice = has_second_rest(w, bands, plastic.M_0, stretch.N_0, EI, EA, bed, grid)
+    M_0, remarks, N = plastic.M_0, 0, stretch.N[grid.mid]
+    if has_second_rest(w, bands, M_0, stretch.N_0, EI, EA, bed, grid):
+        remarks = SECOND_REST
+    if grid.right == SYMMETRIC and _turns(bands, M_0, EI, N, bed, grid):
+        remarks |= UNSTABLE_REST
     rest_nodes(beam, grid)
-    return twice
+    return remarks
 
 
 @compiled

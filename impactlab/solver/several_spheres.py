@@ -10,18 +10,17 @@ a strip's bending across are those there. A delay falls between two steps: w the
 straight line, and the sphere moves as without a force until the later of them, an error of second
 order in the step. Spheres are alike and undented, and their contacts know of each other through the
 beam alone. Each kink (kink.py) is of one contact, and the beam deflects beyond all of them. In
-repeated strikes all spheres come again, each to its dent.
+repeated strikes all spheres come again, each to its dent; before the beam is struck while it still
+moves, they are taken away once they have left, as the first one is.
 
 The balance of energy has what each sphere has lost since its touch, and what its contact holds.
 Leaps (flight.py) are made until the first of these spheres comes.
 """
 
-import math
 from typing import Any
 
 from impactlab.solver import event_tracker, kink
 from impactlab.solver.beam import BeamGrid
-from impactlab.solver.contact.history import energies
 from impactlab.solver.contact_patch import contact_radius
 from impactlab.solver.jit import compiled, inlined
 from impactlab.solver.leapfrog import contact_of, fill_samples
@@ -31,8 +30,24 @@ from impactlab.solver.outputs import (
     ENERGY_OUT_OF_BALANCE,
     STRUCK_NEAR_END,
 )
-from impactlab.solver.responses import read_contact, read_inputs, read_rebound, sphere_leaves
-from impactlab.solver.sphere_table import Table, join
+from impactlab.solver.responses import read_contact, read_inputs, read_rebound
+from impactlab.solver.sphere_table import (
+    AWAY,
+    COMING,
+    MISSED,
+    TOUCHED,
+    Table,
+    again,
+    balance,
+    brought,
+    have_touched,
+    join,
+    leave,
+    rise,
+    steps_alone,
+    take_away,
+    work,
+)
 from impactlab.solver.state import BeamModel, Flight, FurtherSpheres, State
 from impactlab.solver.types import CONTACT_PATCH, Array, Record
 
@@ -69,43 +84,6 @@ def _raise(state: State, grid: BeamGrid, growth: float) -> None:
         state.extra.rise[i] += kink.height_of(grid, growth, i)
 
 
-@compiled
-def _rise(state: State) -> float:
-    return float(state.extra.rise[state.grid.mid])
-
-
-@compiled
-def _leave(state: State) -> bool:
-    for k in range(state.extra.motions.size):
-        if state.extra.motions[k].begun == 1 and not sphere_leaves(state.extra.events[k]):
-            return False
-    return True
-
-
-@compiled
-def _again(state: State, strike: int) -> None:
-    extra = state.extra
-    extra.surplus[0] = 0.0
-    for k in range(extra.motions.size):
-        sphere, contact, events = extra.motions[k], extra.contacts[k], extra.events[k]
-        sphere.step = sphere.begun = 0
-        sphere.ahead = 0.0
-        stored, lost = energies(contact, state.pair, contact.delta_r)
-        sphere.spent = stored + lost
-        event_tracker.start(events, contact, strike)
-        events.contacts = events.touching = 0.0
-        for j in range(extra.samples.shape[2]):
-            extra.samples[k, 0, j] = 0.0
-
-
-@compiled
-def _brought(state: State) -> float:
-    motions, squares = state.extra.motions, 0.0
-    for k in range(motions.size):
-        squares += motions[k].begun * motions[k].velocity ** 2
-    return float(0.5 * state.extra.fastest[state.extra.run].sphere_mass * squares)
-
-
 def _presses(model: BeamModel) -> Any:
     """Return a function that takes a further sphere on by a step."""
     touch, sag, curvature = contact_of(model, True), model.sag, model.curvature
@@ -129,7 +107,7 @@ def _presses(model: BeamModel) -> Any:
             shift = pair.bending * elastic
         face += shift
         if t >= 0.0:
-            sphere.begun, contact.shift = 1, shift
+            sphere.begun, contact.shift = TOUCHED, shift
             sphere.w_0 = face - t / dt * (face - sphere.face)
             sphere.w = sphere.w_0 + sphere.velocity * t + 0.5 * gravity * t * t
             sphere.v = sphere.velocity + gravity * (t - 0.5 * dt)
@@ -146,7 +124,7 @@ def _presses(model: BeamModel) -> Any:
         case, step = extra.fastest[extra.run], sphere.step
         t = step * dt - sphere.delay
         sphere.step = step + 1
-        if sphere.begun == 0:
+        if sphere.begun == COMING:
             begin(state, k, now, t)
         if t < 0.0:
             return
@@ -206,11 +184,9 @@ def _leaps(model: BeamModel) -> Flight | None:
         state: State, now: int, gap: float, sphere: tuple[float, float], w_max: float, room: int
     ) -> int:
         extra, dt = state.extra, state.grid.dt
-        for k in range(extra.motions.size):
-            other = extra.motions[k]
-            if other.begun == 1:
-                return 0
-            room = min(room, math.ceil(other.delay / dt) - 1 - other.step)
+        if have_touched(extra.motions):
+            return 0
+        room = min(room, steps_alone(extra.motions, dt))
         leapt = plain_leap(_beam(state), now, gap, sphere, w_max, room)
         if leapt > 0:
             push(_beam(state), 1 - now, extra.nodes, extra.forces)
@@ -274,17 +250,15 @@ def _energies(model: BeamModel) -> Any:
 
     @compiled
     def energy(state: State, now: int, F: float, u_mid: float) -> float:
-        dt, extra, case = state.grid.dt, state.extra, state.extra.fastest[state.extra.run]
+        extra = state.extra
         total = plain_energy(_beam(state), now, F, u_mid) - extra.surplus[0]
         for k in range(extra.motions.size):
             sphere, events = extra.motions[k], extra.events[k]
-            if sphere.begun == 1:
-                stored, lost = energies(extra.contacts[k], state.pair, events.delta)
-                fallen = sphere.w - dt * sphere.v - sphere.w_0
-                square = sphere.v_before * sphere.v - sphere.velocity * sphere.velocity
-                total += stored + lost - sphere.spent
-                total += case.sphere_mass * (0.5 * square - case.gravity * fallen)
-                events.v_s, events.v_mid = sphere.v_before, sphere.u_before / dt
+            if sphere.begun > COMING:
+                in_contact, gained = balance(state, k)
+                total += in_contact
+                total += gained
+                events.v_s, events.v_mid = sphere.v_before, sphere.u_before / state.grid.dt
         return total
 
     return energy
@@ -330,17 +304,17 @@ def _settles(model: BeamModel) -> Any:
     return settle
 
 
-def _rests_twice(model: BeamModel) -> Any:
-    """Return a function that tells whether the beam can rest in a second shape, None of most."""
-    plain_rests_twice = model.rests_twice
-    if plain_rests_twice is None:
+def _rest_remarks(model: BeamModel) -> Any:
+    """Return a function that gives the bits of remarks on the beam at rest, None of most."""
+    plain_rest_remarks = model.rest_remarks
+    if plain_rest_remarks is None:
         return None
 
     @compiled
-    def rests_twice(state: State) -> bool:
-        return bool(plain_rests_twice(_beam(state)))
+    def rest_remarks(state: State) -> int:
+        return int(plain_rest_remarks(_beam(state)))
 
-    return rests_twice
+    return rest_remarks
 
 
 def with_spheres(model: BeamModel) -> BeamModel:
@@ -356,7 +330,8 @@ def with_spheres(model: BeamModel) -> BeamModel:
         extra, u = state.extra, state.beam.u
         for k in range(extra.motions.size):
             extra.motions[k].u_before = u[extra.nodes[k]]
-            press(state, k, now)
+            if extra.motions[k].begun not in (AWAY, MISSED):
+                press(state, k, now)
         move_beam(_beam(state), now, F)
         extra.surplus[0] = push(_beam(state), now, extra.nodes, extra.forces)
         if spread_forces is not None and extra.fastest[extra.run].load == CONTACT_PATCH:
@@ -385,10 +360,10 @@ def with_spheres(model: BeamModel) -> BeamModel:
         deflect=deflect,
         spread=spread,
         settle=_settles(model),
-        rests_twice=_rests_twice(model),
+        rest_remarks=_rest_remarks(model),
         flight=_leaps(model),
         take=None if plain_take is None else take,
         push=None,
-        further=FurtherSpheres(join, _reads(model), _brought, _rise, _leave, _again),
+        further=FurtherSpheres(join, _reads(model), brought, rise, leave, take_away, work, again),
         **_touched(model),
     )

@@ -1,14 +1,16 @@
 """Further spheres: what comes of them from outside the kernels, and their state in a run."""
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from impactlab.solver import event_tracker
-from impactlab.solver.contact.history import CONTACT
+from impactlab.solver.contact.history import CONTACT, energies
 from impactlab.solver.event_tracker import EVENTS
-from impactlab.solver.jit import allocating
+from impactlab.solver.jit import allocating, compiled
 from impactlab.solver.outputs import blank
+from impactlab.solver.responses import sphere_leaves
 from impactlab.solver.state import State
 from impactlab.solver.types import Array, Record, record
 
@@ -18,7 +20,10 @@ step; w (m): displacement after it, counted as the beam's deflection, w_0: at fi
 (m): u of its node before the step, face: where the struck face was a step ago, before the touch.
 ahead (m): of the mean under the pressure, of its node. spent (J): what the contact has kept and
 lost in the strikes before.
-step: number of steps made; begun: whether it has touched the beam."""
+step: number of steps made; begun: COMING, TOUCHED once it has touched the beam, and then AWAY when
+it is taken away, or MISSED when it is before."""
+MISSED, COMING, TOUCHED, AWAY = -1, 0, 1, 2
+_MANY_STEPS = 2**62
 
 
 class Table(NamedTuple):
@@ -111,3 +116,95 @@ def join(state: State, table: Table, r: int, case: Record) -> Further:
         np.zeros(grid.last + 3),
         round(case.duration / grid.dt),
     )
+
+
+@compiled
+def rise(state: State) -> float:
+    """Return how far the kinks of further spheres raise the struck node (m)."""
+    return float(state.extra.rise[state.grid.mid])
+
+
+@compiled
+def leave(state: State) -> bool:
+    """Return whether all that have touched the beam move away."""
+    for k in range(state.extra.motions.size):
+        if state.extra.motions[k].begun == TOUCHED and not sphere_leaves(state.extra.events[k]):
+            return False
+    return True
+
+
+@compiled
+def brought(state: State) -> float:
+    """Return the kinetic energy (J) with which those came that have touched the beam."""
+    motions, squares = state.extra.motions, 0.0
+    for k in range(motions.size):
+        squares += (motions[k].begun > COMING) * motions[k].velocity ** 2
+    return float(0.5 * state.extra.fastest[state.extra.run].sphere_mass * squares)
+
+
+@compiled
+def balance(state: State, k: int) -> tuple[float, float]:
+    """Return what a contact has kept and lost in this strike, and what its sphere gained (J)."""
+    extra, dt = state.extra, state.grid.dt
+    sphere, case = extra.motions[k], extra.fastest[extra.run]
+    stored, lost = energies(extra.contacts[k], state.pair, extra.events[k].delta)
+    fallen = sphere.w - dt * sphere.v - sphere.w_0
+    square = sphere.v_before * sphere.v - sphere.velocity * sphere.velocity
+    gained = case.sphere_mass * (0.5 * square - case.gravity * fallen)
+    return stored + lost - sphere.spent, gained
+
+
+@compiled
+def work(state: State) -> float:
+    """Return what the spheres have given to the beam in this strike (J)."""
+    total = 0.0
+    for k in range(state.extra.motions.size):
+        if state.extra.motions[k].begun > COMING:
+            in_contact, gained = balance(state, k)
+            total -= in_contact + gained
+    return total
+
+
+@compiled
+def have_touched(motions: Array) -> bool:
+    """Return whether a further sphere that has touched the beam is there."""
+    number = 0
+    for k in range(motions.size):
+        number += motions[k].begun == TOUCHED
+    return number > 0
+
+
+@compiled
+def steps_alone(motions: Array, dt: float) -> int:
+    """Return the number of steps of dt (s) before a further sphere comes."""
+    least = _MANY_STEPS
+    for k in range(motions.size):
+        if motions[k].begun == COMING:
+            least = min(least, math.ceil(motions[k].delay / dt) - 1 - motions[k].step)
+    return least
+
+
+@compiled
+def take_away(state: State) -> None:
+    """Take all spheres away, also those that have not come yet."""
+    extra = state.extra
+    for k in range(extra.motions.size):
+        extra.motions[k].begun = AWAY if extra.motions[k].begun == TOUCHED else MISSED
+        extra.forces[k] = 0.0
+
+
+@compiled
+def again(state: State, strike: int) -> None:
+    """Let all spheres come again, once so many strikes are over."""
+    extra = state.extra
+    extra.surplus[0] = 0.0
+    for k in range(extra.motions.size):
+        sphere, contact, events = extra.motions[k], extra.contacts[k], extra.events[k]
+        sphere.step, sphere.begun = 0, COMING
+        sphere.ahead = 0.0
+        stored, lost = energies(contact, state.pair, contact.delta_r)
+        sphere.spent = stored + lost
+        event_tracker.start(events, contact, strike)
+        events.contacts = events.touching = 0.0
+        for j in range(extra.samples.shape[2]):
+            extra.samples[k, 0, j] = 0.0

@@ -46,7 +46,9 @@ class FurtherSpheres(NamedTuple):
     state, case, answer, answers): fill in their answers, and what they add to the run's. brought(
     state): the kinetic energy (J) with which those came that have touched the beam. rise(state):
     how far their kinks raise the struck node (m). leave(state): whether all that came move away.
-    again(state, strike): let them come again, once so many strikes are over.
+    take_away(state): take them away, before the beam is struck again while it moves; work(state):
+    what they have given to the beam by then (J). again(state, strike): let them come again, once so
+    many strikes are over.
     """
 
     join: Callable[..., Any]
@@ -54,6 +56,8 @@ class FurtherSpheres(NamedTuple):
     brought: Callable[..., float]
     rise: Callable[..., float]
     leave: Callable[..., bool]
+    take_away: Callable[..., None]
+    work: Callable[..., float]
     again: Callable[..., None]
 
 
@@ -75,8 +79,8 @@ class BeamModel(NamedTuple):
     width, both times the width, N m. bend_back(state, now, contact, growth): let the
     kink of kink.py grow by so much, rad. section: functions that make room for a section and cut
     it; None: those of section.py for half of the fibres. settle(state): put it to rest, as its
-    plastic strains leave it (settle.py); None: it cannot be struck twice. rests_twice(state):
-    whether it has another stable shape then; None: it has none. push(state, now, nodes,
+    plastic strains leave it (settle.py); None: it cannot be struck twice. rest_remarks(
+    state): bits of remarks on its shape then; None: there are none. push(state, now, nodes,
     forces): add forces (N) on nodes other than the struck one to a step just made, and set beam.w
     and beam.u there; return what `energy` has too much then (J). further: see above.
     """
@@ -98,6 +102,6 @@ class BeamModel(NamedTuple):
     moments: Callable[..., tuple[float, float]] | None = None
     bend_back: Callable[..., None] | None = None
     section: tuple[Callable[..., Any], Callable[..., Any]] | None = None
-    rests_twice: Callable[..., bool] | None = None
+    rest_remarks: Callable[..., int] | None = None
     push: Callable[..., float] | None = None
     further: FurtherSpheres | None = None

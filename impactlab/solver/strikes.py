@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from impactlab.solver import kink, outputs, responses
+from impactlab.solver import kink, responses
 from impactlab.solver.fibre_plasticity import plastic_energy
 from impactlab.solver.jit import compiled, inlined
 from impactlab.solver.state import BeamModel, State
@@ -13,7 +13,8 @@ from impactlab.solver.types import Array, Record
 
 def resting(model: BeamModel) -> Callable[..., int]:
     """Return a function that puts the beam to rest after a strike, unless it goes on moving."""
-    settle, lift, rests_twice = model.settle, model.lift, model.rests_twice
+    settle, lift, rest_remarks = model.settle, model.lift, model.rest_remarks
+    leaves = departure(model)
     rise = None if model.further is None else model.further.rise
 
     @compiled
@@ -34,10 +35,10 @@ def resting(model: BeamModel) -> Callable[..., int]:
         row, last = 1 - now, strike == case.strikes - 1
         if settle is not None and (last or case.strike_interval == 0.0):
             settle(state)
-            if rests_twice is not None and rests_twice(state):
-                answer.remarks |= outputs.SECOND_REST
+            if rest_remarks is not None:
+                answer.remarks |= rest_remarks(state)
             events.v_mid, row = 0.0, int(np.int64(0))
-        elif responses.sphere_leaves(events):  # on as it was, beyond the kink
+        elif leaves(state, events):  # on as it was, beyond the kink
             kink.straighten(state.beam.w, state.grid, -contact.kink)
         pair, section, grid, beam, plastic = state[:5]
         dent, w = contact.delta_r, beam.w[row, grid.mid] - kink.height(grid, contact.kink)

@@ -63,7 +63,7 @@ from impactlab.solver.section import (
     strain_fibres,
 )
 from impactlab.solver.settle import ROUNDS, rest_nodes
-from impactlab.solver.settle_stretch import rests_twice, static_axis, static_stretch
+from impactlab.solver.settle_stretch import rest_remarks, static_axis, static_stretch
 from impactlab.solver.state import BeamModel, State
 from impactlab.solver.strain_rate import RateLaw
 from impactlab.solver.types import ONE, Array, Record
@@ -387,7 +387,7 @@ MODEL = BeamModel(
     euler_bernoulli.deflected,
     _spread,
     settle=_settle,
-    rests_twice=rests_twice,
+    rest_remarks=rest_remarks,
     section=(make_whole_room, cut_whole_section),
     push=_push,
 )

@@ -9,7 +9,7 @@ from scipy.optimize import minimize
 import impactlab as il
 from impactlab.simulate import run_dataset
 from impactlab.solver.beam import CLAMPED, PINNED, make_grid
-from impactlab.solver.outputs import SECOND_REST
+from impactlab.solver.outputs import SECOND_REST, UNSTABLE_REST
 from impactlab.solver.settle_stretch import has_second_rest
 
 NODES = 81
@@ -94,3 +94,32 @@ def test_a_second_rest_after_a_strike_is_remarked(depth, twice):
     residual = run.residual_deflection_over_strikes.item()
     assert residual == pytest.approx(least[NODES // 2], rel=1e-5)
     assert bool(run.remarks.item() & SECOND_REST) == twice
+
+
+@pytest.mark.parametrize(("depth", "unstable"), [(0.0035, True), (0.004, False)])
+def test_a_half_beam_that_would_buckle_on_its_foundation_is_remarked(depth, unstable):
+    """The stiffness of the whole beam against shapes that are 0 in its middle, by its matrix."""
+    paper = il.paper_impact(20.0)
+    beam = replace(paper.beam, depth=depth)
+    bed = 8.0 * beam.bending_stiffness * (np.pi / beam.span) ** 4
+    impact = replace(
+        paper,
+        sphere=replace(paper.sphere, mass=0.26),
+        beam=replace(beam, foundation_stiffness=bed),
+        beam_model="von_karman",
+        contact="hertz",
+        gravity=0.0,
+        strikes=2,  # after which the shape at rest is kept
+    )
+    run = il.simulate(impact, il.Discretisation(nodes=NODES), duration=0.03, samples=2)
+    dx, E, w = beam.span / (NODES - 1), beam.material.youngs_modulus, run.deflection.values
+    _, area = beam.section.cut("lobatto", run.z.size)
+    longer = np.trapezoid(run.plastic_strain.values @ area, dx=dx) / area.sum()
+    N = E * area.sum() * (0.5 * (np.diff(w) ** 2).sum() / dx - longer) / beam.span
+    bends = np.diff(np.eye(NODES), 2, axis=0)[:, 1:-1] / dx**2
+    slopes = np.diff(np.eye(NODES), axis=0)[:, 1:-1] / dx
+    stiffness = beam.bending_stiffness * bends.T @ bends + N * slopes.T @ slopes
+    values, shapes = np.linalg.eigh(stiffness + bed * np.eye(NODES - 2))
+    odd = np.abs(shapes + shapes[::-1]).max(axis=0) < 1e-6
+    assert (values[odd].min() < 0.0) == unstable
+    assert bool(run.remarks.item() & UNSTABLE_REST) == unstable

@@ -15,7 +15,7 @@ from impactlab.model.cost import ANY_RUN, work
 from impactlab.model.discretisation import Discretisation
 from impactlab.model.flow_law import FLOW_LAW_NAMES
 from impactlab.model.impact import Impact, paper_impact
-from impactlab.model.parameters import LAW_PARAMETERS, PARAMETERS, SECTION, with_values
+from impactlab.model.parameters import LAW_PARAMETERS, PARAMETERS, with_values
 from impactlab.provenance import provenance
 from impactlab.solve import compile_kernels, profile_coordinates, solve
 from impactlab.solver import FLOW_LAWS, RESISTANCES
@@ -35,9 +35,6 @@ from impactlab.variables import (
     described,
     status_bits,
 )
-
-_BESIDE_SPHERES = ("strike_position", "support_left", "support_right")
-"""What may be at odds with further spheres."""
 
 
 def columns(design: xr.Dataset) -> tuple[str, ...]:
@@ -119,20 +116,15 @@ def labelled(design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
 
 
 def base(design: xr.Dataset) -> tuple[Impact, Discretisation]:
-    """Return the impact and the discretisation without what is varied.
+    """Return the impact and the discretisation of the first run.
 
-    A section has the sizes of the first run, without which it may be none, and further spheres have
-    its place of the strike and its supports, with which they may not be at odds.
+    What is varied is in it, too: without that, an elastic end may lack its springs.
     """
-    stated_by_first = (
-        *SECTION,
-        *(_BESIDE_SPHERES if "further_spheres" in design.variables else ()),
-    )
-    varied = {name for name in listed(design, "varied") if name not in stated_by_first}
     variables = design.variables  # quicker to get than arrays with labels
-    stated = [name for name in PARAMETERS if name in variables and name not in varied]
-    fixed = {name: variables[name].values.flat[0].item() for name in stated}
-    return with_values(paper_impact(), Discretisation(), fixed)
+    values = {
+        name: variables[name].values.flat[0].item() for name in PARAMETERS if name in variables
+    }
+    return with_values(paper_impact(), Discretisation(), values)
 
 
 def prepare(design: xr.Dataset) -> None:

@@ -33,6 +33,14 @@ def test_a_study_compiles_the_kernels_of_its_runs(option, small_design, monkeypa
     assert compiled == [(["timoshenko"], ["leapfrog"], sorted(set(needed)), [False], [(0, 0)])]
 
 
+def test_what_the_base_needs_may_vary(small_design):
+    """An elastic end has no base without its spring."""
+    design = small_design(1.0, varied=["velocity", "nodes", "stiffness_right"])
+    design = design.assign_coords({"support_right": "elastic", "stiffness_right": [1e6, 3e6]})
+    cases = kernels.cases(design, np.arange(4))
+    assert sorted(set(cases["stiffness_right"])) == [1e6, 3e6]
+
+
 def test_compiling_all_leaves_no_kernel_out(monkeypatch):
     programs = {}
     monkeypatch.setitem(compile_kernels.__globals__, "precompile", programs.update)
