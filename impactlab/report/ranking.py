@@ -5,7 +5,7 @@ import xarray as xr
 
 from impactlab.figures import access, labels, measures
 from impactlab.figures.measures import MORRIS, SOBOL, Index, analysed
-from impactlab.methods.record import Family
+from impactlab.methods.record import Family, SensitivityVerdict
 from impactlab.methods.runs import correlations
 from impactlab.report.page import Entry
 from impactlab.report.sensitivity import decimals_of, in_units, uncertainty, with_margin
@@ -18,6 +18,8 @@ _INTERACTS = 0.02
 """Smallest share of the variance from interactions that is named."""
 _LEADING = 0.1
 """Smallest share of the largest index that the headline names."""
+_WIDE_ONLY = 1 << (SensitivityVerdict.WIDE_INTERVALS - 1)
+"""Remarks on indices that are sound but for their wide intervals."""
 _MOST = 3
 """Most parameters that are named per response."""
 
@@ -71,6 +73,24 @@ def entries(
         text = ", ".join(_texts(runs, analysis, family, response, numbers)) or none
         listed.append((labels.title(response), text))
     return listed
+
+
+def first_ranks(
+    runs: xr.Dataset, analysis: xr.Dataset, family: Family, responses: list[str]
+) -> dict[str, str]:
+    """Return by response of a table the input whose interval lies above all others, though wide.
+
+    tests/benchmarks/first_rank.py measures how often it is not the first one.
+    """
+    texts = {}
+    for response in responses if of_table(runs) else ():
+        remarks = int(analysis["sensitivity_remarks"].sel(response=response))
+        index = _index(analysis, family, response)
+        certain = [number for number, (_, worst) in enumerate(index.ranks) if worst == 1]
+        if remarks == _WIDE_ONLY and index.significant[certain].any():
+            (text,) = _texts(runs, analysis, family, response, certain)
+            texts[response] = f"the {text}" if " " in _head(text) else text
+    return texts
 
 
 def without_effect(analysis: xr.Dataset, family: Family, responses: list[str]) -> list[Entry]:
