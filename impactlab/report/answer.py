@@ -148,7 +148,7 @@ def _of_sample(
         headline = ranking.headline(runs, analysis, family, lead)
     elif firsts:
         lead = access.leading(runs, [*firsts])
-        text = f"{firsts.pop(lead)} {open_ranks.format(f' for the {labels.response(lead)}')}"
+        text = f"{firsts.pop(lead)} {open_ranks.format(f' for {ranking.subject(family, lead)}')}"
         headline = labels.sentence(text) if text.startswith("the ") else text
     else:
         return "No sensitivity index of this study is usable", doubtful, note

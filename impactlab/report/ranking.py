@@ -5,6 +5,7 @@ import xarray as xr
 
 from impactlab.figures import access, labels, measures
 from impactlab.figures.measures import MORRIS, SOBOL, Index, analysed
+from impactlab.methods.hsic import TARGET
 from impactlab.methods.record import Family, SensitivityVerdict
 from impactlab.methods.runs import correlations
 from impactlab.report.page import Entry
@@ -37,7 +38,7 @@ def headline(runs: xr.Dataset, analysis: xr.Dataset, family: Family, response: s
     listed = labels.listing([f"the {text}" if " " in _head(text) else text for text in texts])
     plural = len(numbers) > 1
     if family is not SOBOL:
-        text = f"{listed} {'matter' if plural else 'matters'} most for the {name}"
+        text = f"{listed} {'matter' if plural else 'matters'} most for {subject(family, response)}"
     else:
         least = (index.values - index.margins)[numbers].sum()  # where intervals end
         total = least / max(1.0, np.nansum(index.values))
@@ -53,6 +54,12 @@ def headline(runs: xr.Dataset, analysis: xr.Dataset, family: Family, response: s
         size = uncertainty(float(error))
         text += f"; numerical error is {f'negligible ({size})' if error <= margin else size}"
     return labels.sentence(text) if text.startswith("the ") else text
+
+
+def subject(family: Family, response: str) -> str:
+    """Return what the indices of a response are about: the response, or whether it is too large."""
+    name = f"the {labels.response(response)}"
+    return f"whether {name} exceeds its limit" if family is TARGET.family else name
 
 
 def _head(text: str) -> str:
