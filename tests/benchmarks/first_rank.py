@@ -1,4 +1,4 @@
-"""How often the answer of a small table names a first input, and how often a wrong one.
+"""Share of small tables whose answer names a first input, and of those that name a wrong one.
 
 `python tests/benchmarks/first_rank.py delta 64 160`: one row per function and number of rows, with
 the shares of 200 seeds; tables whose intervals are narrow count as without a name. Where two inputs

@@ -31,16 +31,16 @@ def terms_in_order(correlations: Floats, gram: Floats, most: int) -> list[int]:
     norm one, (terms, terms).
     """
     gram, left = gram.copy(), correlations.copy()  # left: of the terms not taken
-    places, taken = np.arange(left.size), list[int]()
+    places, active = np.arange(left.size), list[int]()
     factor = np.zeros((min(most, left.size),) * 2)  # lower Cholesky factor of the taken terms
     signs, coefficients = np.zeros(len(factor)), np.zeros(left.size)
-    step, takes = 0, True
-    while left.size and step < most and len(taken) < places.size:
-        number, best = len(taken), int(np.argmax(np.abs(left)))
+    step, enters = 0, True
+    while left.size and step < most and len(active) < places.size:
+        number, best = len(active), int(np.argmax(np.abs(left)))
         largest = np.abs(left[best])
         if largest <= _NO_CORRELATION:
             break
-        if takes:
+        if enters:
             signs[number] = np.sign(left[best])
             for pair in (gram, gram.T, places):
                 _exchange(pair, number, number + best)
@@ -49,7 +49,7 @@ def terms_in_order(correlations: Floats, gram: Floats, most: int) -> list[int]:
                 continue
             _exchange(left, 0, best)
             left = left[1:]
-            taken.append(int(places[number]))
+            active.append(int(places[number]))
             number += 1
         direction, unit = _equiangular(factor[:number, :number], signs[:number])
         slopes = np.around(np.dot(gram[:number, number:].T, direction), _DECIMALS)
@@ -58,15 +58,15 @@ def terms_in_order(correlations: Floats, gram: Floats, most: int) -> list[int]:
             _least_positive((largest + left) / (unit + slopes + _TINY)),
             largest / unit,
         )
-        to_zero = -coefficients[taken] / (direction + _TINY)
+        to_zero = -coefficients[active] / (direction + _TINY)
         nearest = _least_positive(to_zero)
-        takes = not nearest < length
-        if not takes:
+        enters = not nearest < length
+        if not enters:
             signs[np.flatnonzero(to_zero == nearest)] *= -1.0
-        coefficients[taken] += length * direction
+        coefficients[active] += length * direction
         left = left - length * slopes
         step += 1
-    return taken
+    return active
 
 
 def _exchange(array: NDArray[Any], first: int, second: int) -> None:
