@@ -1,4 +1,4 @@
-"""Metadata for the package index: addresses of the project, and the README with absolute links.
+"""Metadata for the package index: addresses of the project, and the README with absolute links."""
 
 import re
 from pathlib import Path
