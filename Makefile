@@ -107,8 +107,8 @@ stored: $(MADE)-docs
 site: docs $(MADE)-dev
 	$(IN_VENV) python -m pytest -m site $(PYTEST_ARGS)
 
-# In an environment of its own, whose metadata may be newer than what .venv knows. The changelog last:
-# until it has a date, what was built is for a trial.
+# In an environment of its own, whose metadata may be newer than what .venv knows. Changelog and address
+# last: until they are stated, what was built is for a trial.
 release: $(MADE)-dev
 	$(IN_VENV) python -m pytest tests/unit/test_packaging.py $(PYTEST_ARGS)
 	rm -rf dist
@@ -118,6 +118,9 @@ release: $(MADE)-dev
 	build/release/bin/python -m twine check --strict dist/*
 	@! grep '^## .*(unreleased)' CHANGELOG.md || { \
 	  echo 'CHANGELOG.md: give this version its date before you upload dist/.'; exit 1; }
+	@! grep '^repository = ""' pyproject.toml || { \
+	  echo 'pyproject.toml: state the repository, or no link of the README works on the package index.'; \
+	  exit 1; }
 
 bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py

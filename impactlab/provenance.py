@@ -9,7 +9,7 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-_PACKAGES = "impactlab numpy numba xarray netCDF4 dask scikit-learn scipy"
+_PACKAGES = "impactlab numpy numba xarray netCDF4 dask scipy"
 
 
 def provenance() -> dict[str, str]:

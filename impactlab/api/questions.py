@@ -37,7 +37,8 @@ def rare_event(
     coefficient_of_variation : float, default 0.1
         Standard error to reach over the probability, from 0.01 to 0.5.
     surrogate : bool, default False
-        True to let a Gaussian process place the runs; `samples` is not used then.
+        True to let a Gaussian process place the runs, which needs scikit-learn
+        (``pip install 'impactlab[kriging]'``); `samples` is not used then.
     workers : int, optional
         Number of threads; by default that of the machine's cores.
 
@@ -55,6 +56,8 @@ def rare_event(
         If the study has no sample, or not one limit.
     ValueError
         If a setting is out of range, or another study has results of this name.
+    OSError
+        If scikit-learn is needed and not installed.
 
     References
     ----------

@@ -32,7 +32,8 @@ def rare(
 
     Draws samples that move towards the limit, solves them, and prints the probability and the
     likeliest way beyond the limit. Writes rare_event.nc and rare_event.html, its report, to
-    results/NAME; runs are kept there, and are not solved again.
+    results/NAME; runs are kept there, and are not solved again. --surrogate needs
+    pip install 'impactlab[kriging]'.
     """
     stop_solving()
     from impactlab.report.console import print_estimate

@@ -150,14 +150,22 @@ def _of_sample(
     family, names = families[0], analysed(runs, analysis)
     sound = [name for name in names if access.is_sound(analysis, name)]
     doubtful = ranking.unusable(runs, analysis)
+    firsts = ranking.first_ranks(runs, analysis, family, [n for n in names if n not in sound])
     note = f"{family.title}, {family.ranked_by(analysis).label}, ± the half-width of the"
     note += f" {access.confidence(analysis)} interval. {shared(runs)}".rstrip()
-    if not sound:
+    open_ranks = "matters most{}; intervals are too wide for the other ranks"
+    if sound:
+        lead = access.leading(runs, sound)
+        headline = ranking.headline(runs, analysis, family, lead)
+    elif firsts:
+        lead = access.leading(runs, [*firsts])
+        text = f"{firsts.pop(lead)} {open_ranks.format(f' for {ranking.subject(family, lead)}')}"
+        headline = labels.sentence(text) if text.startswith("the ") else text
+    else:
         return "No sensitivity index of this study is usable", doubtful, note
-    lead = access.leading(runs, sound)
-    headline = ranking.headline(runs, analysis, family, lead)
-    others = [name for name in sound if name != lead]
-    findings = ranking.entries(runs, analysis, family, others)
+    findings = ranking.entries(runs, analysis, family, [name for name in sound if name != lead])
+    for name, text in firsts.items():
+        findings.append((labels.title(name), f"{text} {open_ranks.format('')}"))
     return headline, [*findings, *ranking.without_effect(analysis, family, sound), *doubtful], note
 
 

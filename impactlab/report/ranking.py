@@ -5,7 +5,8 @@ import xarray as xr
 
 from impactlab.figures import access, labels, measures
 from impactlab.figures.measures import MORRIS, SOBOL, Index, analysed
-from impactlab.methods.record import Family
+from impactlab.methods.hsic import TARGET
+from impactlab.methods.record import Family, SensitivityVerdict
 from impactlab.methods.runs import correlations
 from impactlab.report.page import Entry
 from impactlab.report.sensitivity import decimals_of, in_units, uncertainty, with_margin
@@ -18,6 +19,10 @@ _INTERACTS = 0.02
 """Smallest share of the variance from interactions that is named."""
 _LEADING = 0.1
 """Smallest share of the largest index that the headline names."""
+_WIDE_ONLY = 1 << (SensitivityVerdict.WIDE_INTERVALS - 1)
+"""Remarks on indices that are sound but for their wide intervals."""
+_MEASURED = ("delta", "hsic", "rbd_fast", "regression", "shapley")
+"""Indices whose first ranks were measured, see `first_ranks`."""
 _MOST = 3
 """Most parameters that are named per response."""
 
@@ -35,7 +40,7 @@ def headline(runs: xr.Dataset, analysis: xr.Dataset, family: Family, response: s
     listed = labels.listing([f"the {text}" if " " in _head(text) else text for text in texts])
     plural = len(numbers) > 1
     if family is not SOBOL:
-        text = f"{listed} {'matter' if plural else 'matters'} most for the {name}"
+        text = f"{listed} {'matter' if plural else 'matters'} most for {subject(family, response)}"
     else:
         least = (index.values - index.margins)[numbers].sum()  # where intervals end
         total = least / max(1.0, np.nansum(index.values))
@@ -51,6 +56,12 @@ def headline(runs: xr.Dataset, analysis: xr.Dataset, family: Family, response: s
         size = uncertainty(float(error))
         text += f"; numerical error is {f'negligible ({size})' if error <= margin else size}"
     return labels.sentence(text) if text.startswith("the ") else text
+
+
+def subject(family: Family, response: str) -> str:
+    """Return what the indices of a response are about: the response, or whether it is too large."""
+    name = f"the {labels.response(response)}"
+    return f"whether {name} exceeds its limit" if family is TARGET.family else name
 
 
 def _head(text: str) -> str:
@@ -71,6 +82,25 @@ def entries(
         text = ", ".join(_texts(runs, analysis, family, response, numbers)) or none
         listed.append((labels.title(response), text))
     return listed
+
+
+def first_ranks(
+    runs: xr.Dataset, analysis: xr.Dataset, family: Family, responses: list[str]
+) -> dict[str, str]:
+    """Return by response of a table the input whose interval lies above all others, though wide.
+
+    tests/benchmarks/first_rank.py measures how often it is not the first one: at most 3 %.
+    """
+    texts = {}
+    ranking = access.names(runs, "indices")[:1] if of_table(runs) else []
+    for response in responses if {*ranking} & {*_MEASURED} else ():
+        remarks = int(analysis["sensitivity_remarks"].sel(response=response))
+        index = _index(analysis, family, response)
+        certain = [number for number, (_, worst) in enumerate(index.ranks) if worst == 1]
+        if remarks == _WIDE_ONLY and index.significant[certain].any():
+            (text,) = _texts(runs, analysis, family, response, certain)
+            texts[response] = f"the {text}" if " " in _head(text) else text
+    return texts
 
 
 def without_effect(analysis: xr.Dataset, family: Family, responses: list[str]) -> list[Entry]:

@@ -1,6 +1,7 @@
 """The probability of a rare event from runs of a study's solver, kept and found again on disk."""
 
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Self
 
@@ -170,7 +171,12 @@ def limited_sample(study: AnyStudy) -> RandomSample:
 def check_estimate(
     owner: str, samples: int, runs: int, target: float, *, surrogate: bool = False
 ) -> tuple[int, int]:
-    """Return runs per level and of an estimate. Raises ValueError for settings out of range."""
+    """Return runs per level and of an estimate.
+
+    Raises ValueError for settings out of range, OSError where a package is not installed.
+    """
+    if surrogate and find_spec("sklearn") is None:
+        raise OSError(f"{owner}: surrogate: needs scikit-learn: pip install 'impactlab[kriging]'")
     samples = integer(owner, "samples", samples, _FEWEST)
     if not 0.01 <= target <= 0.5:
         message = "must be from 0.01 to 0.5"
@@ -198,7 +204,7 @@ def rare_event(
 
     folder: of the study's results. Runs are kept in `folder`/rare_event and are not solved again.
 
-    Raises as LimitRuns.of, and ValueError for settings out of range.
+    Raises as LimitRuns.of and check_estimate.
     """
     samples, runs = check_estimate("rare_event", samples, runs, target, surrogate=surrogate)
     solver = LimitRuns.of(study, folder, engine, RARE_EVENT)

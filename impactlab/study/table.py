@@ -22,14 +22,13 @@ _LARGEST_TIE = 0.05  # share of the runs with one value, from which on classes w
 _TAKEN = ("run", "row", "status", "response", "parameter")  # names of the dataset's own
 _UNLIKELY = 4.0  # standard errors of a rank correlation that chance does not make
 
-GIVEN_DATA = tuple(
-    record.name
-    for kind in SAMPLES.values()
-    if issubclass(kind, Hypercube)
-    for record in kind.records
-    if not record.of_limits
-)
-"""Names of the indices that a table can have."""
+_RECORDS = [
+    record for kind in SAMPLES.values() if issubclass(kind, Hypercube) for record in kind.records
+]
+GIVEN_DATA = tuple(record.name for record in _RECORDS if not record.of_limits)
+"""Names of the indices that any table can have."""
+OF_LIMITS = tuple(record.name for record in _RECORDS if record.of_limits)
+"""Names of those that need the limit of a response."""
 Table = Mapping[str, Any]
 """Columns by name: a mapping, a pandas DataFrame or an xarray Dataset."""
 
@@ -39,6 +38,7 @@ def runs_of_table(
     outputs: Table,
     *,
     indices: str | Sequence[str] = "delta",
+    limits: Mapping[str, float] | None = None,
     seed: int = 1,
     title: str = "table",
 ) -> xr.Dataset:
@@ -58,6 +58,8 @@ def runs_of_table(
         index: its verdict is `failed_runs`.
     indices : str or sequence of str, default "delta"
         Indices of given data, as those of `Latin`; the first one ranks the parameters.
+    limits : mapping of str to float, optional
+        Limit by response, for "target_hsic": what decides whether the response exceeds it.
     seed : int, default 1
         Equal seeds give equal resamples and the same order of the rows.
     title : str, default "table"
@@ -84,10 +86,14 @@ def runs_of_table(
     >>> il.analyse(runs).delta.isel(response=0).argmax("parameter").item()
     0
     """
-    records = _records(indices)
+    limits = dict(limits or {})
+    records = _records(indices, limits)
     parameters = {str(name): np.asarray(inputs[name]) for name in inputs}
     responses = {str(name): np.asarray(outputs[name]) for name in outputs}
     rows = _check_shape(parameters, responses)
+    for name in limits:
+        if name not in responses:
+            raise ValueError(f"limits: {name!r} {unknown('response', name, responses)}")
     _check_size(records, title, rows, len(parameters))
     order = np.random.default_rng(seed).permutation(rows)
     columns = {
@@ -104,23 +110,32 @@ def runs_of_table(
         "responses": list(responses),
         "analyses": "sensitivity",
     }
+    if limits:
+        attrs |= {"limited": list(limits), "limits": [float(value) for value in limits.values()]}
     status = {"status": ("run", np.zeros(rows, np.int32))}
     axes = {"run": np.arange(rows), "row": ("run", order, {"long_name": "row of the table"})}
     attrs |= _correlations({name: parameters[name].astype(float) for name in numbers})
     return xr.Dataset(variables | status, axes | columns, attrs)
 
 
-def _records(indices: str | Sequence[str]) -> list[Indices]:
-    names = [indices] if isinstance(indices, str) else list(indices)
+def _records(indices: str | Sequence[str], limits: Mapping[str, float]) -> list[Indices]:
+    names, choices = (
+        [indices] if isinstance(indices, str) else list(indices),
+        GIVEN_DATA + OF_LIMITS,
+    )
     if not names:
-        raise ValueError(f"indices is empty: choose from {', '.join(GIVEN_DATA)}")
+        raise ValueError(f"indices is empty: choose from {', '.join(choices)}")
     for name in names:
-        if name not in GIVEN_DATA:
-            raise ValueError(
-                f"indices: {name!r} {unknown('index of given data', name, GIVEN_DATA)}"
-            )
+        if name not in choices:
+            raise ValueError(f"indices: {name!r} {unknown('index of given data', name, choices)}")
         if names.count(name) > 1:
             raise ValueError(f"indices names {name} more than once: name it once")
+    if missing := not limits and [name for name in names if name in OF_LIMITS]:
+        raise ValueError(f"indices: {missing[0]} needs `limits`: state that of a response")
+    if limits and not set(names) & set(OF_LIMITS):
+        raise ValueError(
+            f"limits are for {', '.join(OF_LIMITS)}: list it in indices, or leave them out"
+        )
     return [INDICES[name] for name in names]
 
 

@@ -1,5 +1,7 @@
 """Runs of a table that was made elsewhere."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -68,6 +70,14 @@ MISTAKES = {
     "words": ({"a": ["x", "y"] * 128}, {}, {"indices": "rbd_fast"}, "words, which have no order"),
     "mixed": ({"a": np.array(["x", None] * 128)}, {}, {}, "holds None among words"),
     "index": ({}, {}, {"indices": "sobol"}, "unknown index of given data"),
+    "target": ({}, {}, {"indices": "target_hsic"}, "target_hsic needs `limits`"),
+    "no target": ({}, {}, {"limits": {"y": 1}}, "limits are for target_hsic: list it"),
+    "limit": (
+        {},
+        {},
+        {"indices": "target_hsic", "limits": {"z": 1}},
+        "limits: 'z' unknown response",
+    ),
     "name": ({"run": np.zeros(ROWS)}, {}, {}, "'run' cannot name a column"),
     "both": ({}, {"a": np.zeros(ROWS)}, {}, "a names an input, too"),
     "text": ({}, {"y": ["p"] * ROWS}, {}, "y holds no numbers"),
@@ -86,3 +96,23 @@ def test_too_few_rows_are_refused(table):
     few = [{name: values[:50] for name, values in part.items()} for part in table]
     with pytest.raises(ValueError, match="50 rows are too few for delta: give 64 or more"):
         il.runs_of_table(*few)
+
+
+def test_a_small_table_tells_the_first_input_where_intervals_separate_it():
+    rng = np.random.default_rng(1)
+    inputs = {name: rng.uniform(0, 1, 80) for name in ("a", "b", "c")}
+    dominant = {"y": 6 * inputs["a"] + inputs["b"] + 0.5 * inputs["c"]}
+    equal = {"y": inputs["a"] + inputs["b"] + 0.5 * inputs["c"]}
+    options = {"indices": "rbd_fast", "seed": 2}
+    first, doubt = il.answers(il.runs_of_table(inputs, dominant, **options))
+    assert re.fullmatch(
+        r"a \([\d.]+ ± [\d.]+ %\) matters most for the y; intervals are too wide for the other "
+        r"ranks\.",
+        first,
+    )
+    assert doubt == "Do not rely on the indices of: y (wide intervals)."
+    first, *_ = il.answers(il.runs_of_table(inputs, equal, **options))
+    assert first == "No sensitivity index of this study is usable."
+    lines = il.answers(il.runs_of_table(inputs, {"x": dominant["y"], "z": equal["y"]}, **options))
+    assert "matters most for the x" in lines[0]
+    assert lines[1] == "Do not rely on the indices of: x (wide intervals), z (wide intervals)."

@@ -7,6 +7,8 @@ import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from runpy import run_path
+from types import SimpleNamespace
 
 import pytest
 from packaging.requirements import Requirement
@@ -71,6 +73,22 @@ def test_the_recipe_for_conda_needs_what_the_project_needs():
     assert entry_points == PROJECT["scripts"]
     (backend,) = tomllib.loads((ROOT / "pyproject.toml").read_text())["build-system"]["requires"]
     assert backend in {line.replace(" ", "") for line in recipe["requirements"]["host"]}
+
+
+def test_links_of_the_readme_are_absolute_on_the_package_index(monkeypatch):
+    interface = SimpleNamespace(MetadataHookInterface=object)  # hatchling is where wheels are built
+    monkeypatch.setitem(sys.modules, "hatchling.metadata.plugin.interface", interface)
+    hook = run_path(str(ROOT / "recipe" / "hatch_build.py"))["CustomMetadataHook"]()
+    hook.root, hook.config = str(ROOT), {"repository": "https://example.org/a/b/"}
+    hook.update(metadata := {})
+    relative = re.findall(r"\]\(([^:)]+)\)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    links = re.findall(r"\]\((.+?)\)", metadata["readme"]["text"])
+    parts = [re.fullmatch("https://example.org/a/b/(blob|raw)/HEAD/(.+)", link) for link in links]
+    assert [part[2] for part in parts if part] == relative
+    assert relative
+    assert all((ROOT / path.partition("#")[0]).exists() for path in relative)
+    assert all((part[1] == "raw") == part[2].endswith(".png") for part in parts if part)
+    assert all(part or link.startswith("https://") for part, link in zip(parts, links, strict=True))
 
 
 SECTIONS = [

@@ -13,7 +13,6 @@ uniform parameter they are Legendre's, for a normal one Hermite's: Xiu and Karni
 J. Sci. Comput. 24, 619.
 """
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -23,6 +22,7 @@ import scipy  # its stats are loaded when first used
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from impactlab.analysis.surrogate.least_angle import terms_in_order
 from impactlab.methods.entries import Distribution
 from impactlab.types import Floats
 
@@ -197,21 +197,12 @@ def fit(inputs: Floats, values: Floats, seed: int, polynomials: Sequence[Polynom
 
 def _order(columns: Floats, values: Floats) -> list[int]:
     """Return the terms in the order of least angle regression; values: of mean zero."""
-    # scikit-learn is a large dependency for one function, but its treatment of dependent terms and
-    # round-off decides which terms are picked: another one would change stored results.
-    from sklearn.exceptions import ConvergenceWarning
-    from sklearn.linear_model import lars_path_gram  # takes a second
-
     centred = columns[1:] - columns[1:].mean(axis=1, keepdims=True)
     centred /= np.linalg.norm(centred, axis=1, keepdims=True)
     # Scaled to norm one, as the terms are, because the tolerances are absolute.
     correlation = centred @ (values / (np.linalg.norm(values) or 1.0))
-    with warnings.catch_warnings():
-        # Of terms that the runs cannot distinguish it rightly drops one.
-        warnings.simplefilter("ignore", ConvergenceWarning)
-        gram, most = centred @ centred.T, min(_MOST_TERMS, len(values) // 4)
-        _, active, _ = lars_path_gram(correlation, gram, n_samples=1, max_iter=most)
-    return [0, *(int(term) + 1 for term in active)]
+    most = min(_MOST_TERMS, len(values) // 4)
+    return [0, *(term + 1 for term in terms_in_order(correlation, centred @ centred.T, most))]
 
 
 def _least_squares(columns: Floats, values: Floats) -> Floats:

@@ -53,6 +53,7 @@ def study_schema() -> Schema:
     table["properties"] |= {
         "inputs": _open({"anyOf": [*plain, _object(Column), drawn]}),
         "outputs": _open({"anyOf": [*plain, _object(Column)]}),
+        "limits": _open(_QUANTITY),
     }
     definitions = {
         "listed_number": _grid_entry(number),

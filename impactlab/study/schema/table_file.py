@@ -26,15 +26,17 @@ from impactlab.model.parameters import Parameter
 from impactlab.model.quantities import si, si_units
 from impactlab.study.schema.declarations import Declared, Intervals
 from impactlab.study.schema.yaml_file import Source
-from impactlab.study.table import GIVEN_DATA, runs_of_table
+from impactlab.study.table import GIVEN_DATA, OF_LIMITS, runs_of_table
 from impactlab.validation.errors import Problem, StudyError, unknown
 from impactlab.validation.fields import (
     FileSection,
     Heading,
     Text,
     Whole,
+    by_name,
     name_at,
     names,
+    quantity,
     validated,
 )
 
@@ -90,6 +92,15 @@ def _read_input(data: Any, info: ValidationInfo) -> InputColumn:
     return InputColumn(column=column.column, units=column.units, distribution=entry)
 
 
+def _read_limits(data: Any, info: ValidationInfo) -> dict[str, float]:
+    """Read limits by output, in SI units; the outputs are read before."""
+    outputs = info.data.get("outputs")
+    if outputs is None:
+        return {}  # their mistakes are told
+    units = {name: quantity(column.si_units) for name, column in outputs.items()}
+    return by_name("Limits", units, data, info)
+
+
 _Input = Annotated[InputColumn, PlainValidator(_read_input)]
 _Output = Annotated[Column, BeforeValidator(_stated)]
 _SOME = Field(min_length=1)
@@ -101,7 +112,8 @@ class TableFile(Heading):
     table: Annotated[Text, Field(min_length=1)]
     inputs: Annotated[dict[StrictStr, _Input], _SOME]
     outputs: Annotated[dict[StrictStr, _Output], _SOME]
-    indices: Annotated[tuple[str, ...], names("index", GIVEN_DATA)] = ("delta",)
+    indices: Annotated[tuple[str, ...], names("index", GIVEN_DATA, OF_LIMITS)] = ("delta",)
+    limits: Annotated[dict[str, float], PlainValidator(_read_limits)] = Field(default_factory=dict)
     seed: Annotated[Whole, Field(ge=0, le=2**32 - 1)] = 1
     analysis: Intervals = Field(default_factory=Intervals)
 
@@ -111,13 +123,15 @@ class TableStudy(Declared):
     """Runs that are made already: the rows of a CSV file, and the indices that are wanted of them.
 
     table: the CSV file, as seen from the folder of the study. inputs, outputs: its columns, by
-    their names in results. seed: of the order of the rows, and of resamples.
+    their names in results. limits: of outputs, in SI units. seed: of the order of the rows, and of
+    resamples.
     """
 
     table: str
     inputs: Mapping[str, InputColumn]
     outputs: Mapping[str, Column]
     indices: tuple[str, ...]
+    limits: Mapping[str, float]
     seed: int
     analysis: Intervals
 
@@ -150,9 +164,9 @@ def runs_of_file(study: TableStudy) -> Any:
         name: _numbers(study.csv, name, column, cells[name], gaps=True)
         for name, column in study.outputs.items()
     }
-    options: Any = {"indices": study.indices, "seed": study.seed, "title": study.name}
+    options: Any = {"indices": study.indices, "limits": study.limits, "seed": study.seed}
     try:
-        runs = runs_of_table(inputs, outputs, **options)
+        runs = runs_of_table(inputs, outputs, title=study.name, **options)
     except ValueError as error:
         raise StudyError(Problem(str(study.csv), "", str(error))) from None
     for name, column in {**study.inputs, **study.outputs}.items():

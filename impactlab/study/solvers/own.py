@@ -22,13 +22,10 @@ from impactlab.model.discretisation import Discretisation
 from impactlab.model.impact import paper_impact
 from impactlab.model.parameters import PARAMETERS, SECTION, WORDS, with_values
 from impactlab.model.section import section_values
-from impactlab.simulate import run_dataset
 from impactlab.study.schema.declarations import AnyStudy, FunctionStudy
 from impactlab.study.shard import Array, Columns
 from impactlab.study.solvers import Solver, flattened, on_design
 from impactlab.study.solvers.fingerprint import fingerprint
-from impactlab.study.solvers.kernels import SOLVER as IMPACT
-from impactlab.study.solvers.kernels import kept
 from impactlab.study.store import OutputSpec
 from impactlab.variables import FLAGS, RESPONSES, STILL_GROWING
 
@@ -174,6 +171,9 @@ def solver(name: str) -> Solver:
             labelled=partial(_labelled_model, task),
             functions=task,
         )
+    # late, here and below: a study is stated without the compiler, which is slow to load
+    from impactlab.study.solvers.kernels import SOLVER as IMPACT
+
     return replace(
         IMPACT,
         version=f"{IMPACT.version} {name}",
@@ -241,6 +241,9 @@ def _unit(value: Any, name: str) -> str:
 
 
 def _responses(task: Task, cases: Array, output: OutputSpec) -> Columns:
+    from impactlab.simulate import run_dataset
+    from impactlab.study.solvers.kernels import kept
+
     if not cases.size:
         return {}
     rows: list[dict[str, Any]] = []
@@ -300,6 +303,8 @@ def _attributes(function: Function, name: str, units: Mapping[str, str]) -> dict
 
 
 def _labelled_responses(task: Task, design: xr.Dataset, answers: Mapping[str, Any]) -> xr.Dataset:
+    from impactlab.study.solvers.kernels import SOLVER as IMPACT
+
     columns, units = _units_apart(answers)
     runs = IMPACT.labelled(design, columns)
     for name, function in task.functions.items():

@@ -1,5 +1,7 @@
 """Rare events of studies: stored runs, workers, words, refusals."""
 
+import sys
+
 import numpy as np
 import pytest
 from scipy.stats import norm
@@ -121,6 +123,12 @@ def test_settings_out_of_range_are_refused(tmp_path):
     ):
         with pytest.raises(ValueError, match=next(iter(settings))):
             il.rare_event(study(tmp_path), workers=1, **settings)
+
+
+def test_a_process_needs_an_extra(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "sklearn", None)
+    with pytest.raises(OSError, match=r"scikit-learn: pip install 'impactlab\[kriging\]'"):
+        il.rare_event(study(tmp_path), surrogate=True, workers=1)
 
 
 def test_a_process_of_many_parameters_is_refused(tmp_path):

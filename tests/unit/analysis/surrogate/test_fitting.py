@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 import xarray as xr
 from SALib.sample import fast_sampler
-from sklearn.linear_model import LinearRegression
+from sklearn.linear_model import LinearRegression, lars_path_gram
 from threadpoolctl import threadpool_limits
 
 from impactlab.analysis.surrogate import analysis
 from impactlab.analysis.surrogate.chaos import MOST_RUNS, basis, drawn, fit
 from impactlab.analysis.surrogate.from_runs import Divided
+from impactlab.analysis.surrogate.least_angle import terms_in_order
 
 from .conftest import UNIT
 
@@ -110,6 +111,27 @@ def test_levels_bound_the_degree(random):
     chaos = fitted(unit, np.sin(5 * unit[:, 0]) + unit[:, 1], 0)
     assert chaos.degrees.max() <= 3
     np.testing.assert_allclose(chaos(unit), np.sin(5 * unit[:, 0]) + unit[:, 1], atol=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["independent", "levels", "copies", "powers"])
+@pytest.mark.filterwarnings("ignore:Regressors in active set degenerate")
+def test_terms_enter_in_the_order_of_scikit_learn(random, kind):
+    """To the last one, also where a term depends on others and round-off decides."""
+    for runs, terms in ((40, 12), (200, 90), (400, 60)):
+        columns = random.standard_normal((terms, runs))
+        if kind == "levels":
+            columns = random.integers(0, 3, columns.shape) * 1.0
+        elif kind == "copies":
+            columns[terms // 2 :] = columns[: terms - terms // 2]
+        elif kind == "powers":
+            columns = np.linspace(-1, 1, runs) ** np.arange(1, terms + 1)[:, None]
+        columns -= columns.mean(axis=1, keepdims=True)
+        columns /= np.linalg.norm(columns, axis=1, keepdims=True)
+        values = columns[:3].sum(axis=0) + 0.01 * random.standard_normal(runs)
+        with threadpool_limits(limits=1):
+            products, correlations = columns @ columns.T, columns @ (values - values.mean())
+            expected = lars_path_gram(correlations, products, n_samples=1, max_iter=50)[1]
+            assert terms_in_order(correlations, products, 50) == [int(term) for term in expected]
 
 
 def test_predictions_are_those_of_scikit_learn_on_the_same_terms(random):

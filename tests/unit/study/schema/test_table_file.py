@@ -118,6 +118,21 @@ def test_go_gives_results_and_a_report_that_speaks_of_rows(tmp_path, columns, mo
     }
 
 
+def test_a_limit_in_its_unit_gives_target_indices(tmp_path, columns):
+    text = TEXT.replace("[delta, pawn]", "[target_hsic]\nlimits: {force: 6.5 kN}")
+    path = _written(tmp_path, columns, text)
+    indices = il.analyse(runs_of_file(read_any(path)))["target_hsic"]
+    inputs = {name: columns[name] for name in ("speed", "gap", "metal")}
+    above = {"force": (columns["force (kN)"] > 6.5) * 1.0}
+    options = {"indices": "target_hsic", "seed": 3, "limits": {"force": 0.5}}
+    plain = il.analyse(il.runs_of_table(inputs, above, **options))["target_hsic"]
+    np.testing.assert_allclose(indices.sel(response="force"), plain[0], rtol=1e-6)
+    assert indices.sel(response="force")[0] > 0.3
+    assert np.isnan(indices.sel(response="dent")).all()
+    validator = Draft202012Validator(json.loads(json.dumps(study_schema())))
+    assert validator.is_valid(read_mapping(text, str(path)))
+
+
 def test_a_choice_makes_words_of_numbers(tmp_path, columns):
     columns["metal"] = np.where(columns["metal"] == "steel", "1", "2")
     words = "metal: {distribution: choice, values: ['2', '1'], weights: [1, 3]}"
@@ -201,6 +216,8 @@ TEXTS = {
     "key": ("high: 5 m/s", "hihg: 5", "inputs.speed.hihg = 5: unknown key; did you mean 'high'"),
     "index": ("pawn", "sobol", "indices.1 = 'sobol': unknown index"),
     "output": ("dent: um", "dent: {unit: um}", "outputs.dent.unit = 'um': unknown key"),
+    "limit": ("seed", "limits: {force: 3 mm}\nseed", "limits.force = '3 mm'.*wrong dimension"),
+    "limited": ("seed", "limits: {forc: 3}\nseed", "limits.forc = 3: unknown key; did you mean"),
     "none": ("  dent: um\n", "", None),
     "inputs": ("indices", "inputs: {}\nindices", "duplicate"),
 }
