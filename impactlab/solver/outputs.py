@@ -48,6 +48,9 @@ NO_SHAKEDOWN = 8192
 NOT_STEADY = 16384
 # A beam whose plastic strains let it rest in a second shape, too.
 SECOND_REST = 32768
+# Answers in which the law finite_element, or the corrections, are known to be off.
+SHALLOW_DENT = 65536
+CONTACT_FORCE_OUTSIDE_DATA = 131072
 
 SHORT_PAUSE = 0.05
 """Pauses shorter than this share of the first contact until then do not end it."""
