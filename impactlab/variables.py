@@ -122,7 +122,7 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "contact_force_outside_data": (
         outputs.CONTACT_FORCE_OUTSIDE_DATA,
-        "the contact force is above 0.3 of the beam's S_y B H: it may be 10 % too large",
+        "the contact force is above 0.25 of the beam's S_y B H: it may be 10 % too large",
     ),
     "shallow_dent": (
         outputs.SHALLOW_DENT,
