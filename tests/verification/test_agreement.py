@@ -11,7 +11,8 @@ import impactlab as il
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
 TESTS = Path(__file__).parents[1]
-TABLE = pd.read_csv(TESTS.parent / "docs" / "agreement_metals.csv", index_col="case")
+DOCS = TESTS.parent / "docs"
+TABLE = pd.read_csv(DOCS / "agreement_metals.csv", index_col="case")
 TARGET = {
     "peak_force": 2.0,
     "contact_duration": 2.0,
@@ -22,13 +23,11 @@ TARGET = {
 }
 """Largest difference from 3-D in %."""
 EXCEPTIONS = {
-    ("kinematic hardening 5 GPa", "peak_force"),
     ("kinematic hardening 5 GPa", "contact_duration"),
-    ("tungsten carbide sphere", "peak_force"),
     ("design 1", "peak_force"),
     ("design 2", "contact_duration"),
 }
-"""Misses without a mark, by less than the 1.5 % by which the force of one 3-D mesh waves."""
+"""Misses without a mark, of less than 3 %: contacts that harden kinematically are too short."""
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +45,16 @@ def test_cases_have_the_marks_of_the_table(metals):
         assert metals.marks(run) == marks, name
 
 
+@pytest.mark.parametrize("table", ["agreement.csv", "agreement_places.csv"])
+def test_beams_of_the_paper_and_near_it_meet_the_target(table):
+    rows = pd.read_csv(DOCS / table).query("model == 'all'")
+    for response, limit in TARGET.items():
+        assert not (rows[response].abs() > limit).any(), response
+
+
 def test_cases_without_a_mark_meet_the_target():
+    narrow = pd.read_csv(DOCS / "agreement_narrow.csv").query("marked != 'yes'")
+    assert (narrow[["peak force", "largest indentation"]].abs() <= 2.0).all(axis=None)
     unmarked = TABLE[TABLE.marks.isna()]
     misses = {
         (case, response)
@@ -55,4 +63,4 @@ def test_cases_without_a_mark_meet_the_target():
     }
     assert misses == EXCEPTIONS
     for case, response in misses:
-        assert abs(TABLE.loc[case, response]) < TARGET[response] + 1.5
+        assert abs(TABLE.loc[case, response]) < 3.0
