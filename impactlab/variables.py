@@ -109,18 +109,24 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "sphere_yield_outside_data": (
         outputs.SPHERE_YIELD_OUTSIDE_DATA,
-        "the sphere's yield stress is below 1 times the beam's: a sphere that is softer than the "
-        "beam was not compared with 3-D",
+        "the sphere's yield stress is below 1 times the beam's: not compared with 3-D",
     ),
     "stiffness_ratio_outside_data": (
         outputs.STIFFNESS_RATIO_OUTSIDE_DATA,
-        "the sphere's Young's modulus is outside 0.33 to 10 times the beam's, the data of the "
-        "contact law",
+        "the sphere's Young's modulus is outside 0.33 to 10 times the beam's, the law's data",
     ),
     "contact_circle_outside_data": (
         outputs.CONTACT_CIRCLE_OUTSIDE_DATA,
-        "the contact radius is above 0.6 of half the beam's depth or 0.3 of half its width, "
-        "beyond what the corrections are tested for: forces and indentations may be off by 10 %",
+        "the contact radius is above 0.6 of half the beam's depth or 0.3 of half its width: forces "
+        "and indentations may be off by 10 %, and by 30 % where it is nearly the depth",
+    ),
+    "contact_force_outside_data": (
+        outputs.CONTACT_FORCE_OUTSIDE_DATA,
+        "the contact force is above 0.25 of the beam's S_y B H: it may be 10 % too large",
+    ),
+    "shallow_dent": (
+        outputs.SHALLOW_DENT,
+        "the dent is below 0.2 of the indentation and may be off by 6 %",
     ),
     "struck_near_end": (
         outputs.STRUCK_NEAR_END,
@@ -130,8 +136,7 @@ WARNINGS: dict[str, tuple[int, str]] = {
     "wall_may_dent": (
         outputs.WALL_MAY_DENT,
         "the section has (or may have) a wall or a flange that dents and bends under the sphere, "
-        "which the beam model does not: forces are too large, contacts too short, the more so the "
-        "thinner it is",
+        "which the beam model does not: forces are too large and contacts too short",
     ),
     "round_top": (
         outputs.ROUND_TOP,

@@ -50,6 +50,9 @@ NOT_STEADY = 16384
 SECOND_REST = 32768
 # Half a beam whose rest is symmetric, while the whole one would buckle.
 UNSTABLE_REST = 65536
+# Answers in which the law finite_element, or the corrections, are known to be off.
+SHALLOW_DENT = 131072
+CONTACT_FORCE_OUTSIDE_DATA = 262144
 
 SHORT_PAUSE = 0.05
 """Pauses shorter than this share of the first contact until then do not end it."""

@@ -13,9 +13,11 @@ from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.finite_element import (
     LARGEST_CIRCLE,
     LARGEST_CIRCLE_ACROSS,
+    LARGEST_FORCE,
     LARGEST_HARDENING,
     LARGEST_POISSONS_RATIO,
     LARGEST_STIFFNESS,
+    LEAST_DENT,
     LEAST_HARDNESS,
     LEAST_POISSONS_RATIO,
     LEAST_STIFFNESS,
@@ -29,6 +31,7 @@ from impactlab.solver.jit import compiled
 from impactlab.solver.outputs import (
     CONTACT_CIRCLE_OUTSIDE_DATA,
     CONTACT_CREATED_ENERGY,
+    CONTACT_FORCE_OUTSIDE_DATA,
     CONTACT_LEFT_A_BULGE,
     DEFLECTION_STILL_GROWING,
     FIRST_CONTACT_UNFINISHED,
@@ -38,6 +41,7 @@ from impactlab.solver.outputs import (
     OUTSIDE_CONTACT_LAW,
     POISSONS_RATIO_OUTSIDE_DATA,
     ROUND_TOP,
+    SHALLOW_DENT,
     SKIN_MAY_GIVE,
     SPHERE_NOT_LEAVING,
     SPHERE_YIELD_OUTSIDE_DATA,
@@ -112,6 +116,9 @@ def read_contact(answer: Record, events: Record, contact: Record, pair: Pair) ->
             answer.remarks |= CONTACT_CREATED_ENERGY
         if contact.delta_r < 0.0:
             answer.remarks |= CONTACT_LEFT_A_BULGE
+        fitted = pair.law == _FINITE_ELEMENT and contact.delta_r > 0.0
+        if fitted and contact.delta_r < LEAST_DENT * contact.delta_m:
+            answer.remarks |= SHALLOW_DENT
 
 
 @compiled
@@ -130,10 +137,7 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
     read_skin(answer, case.skin_thickness, contact, pair)
     corrected = case.contact_prestress > 0 or case.width_inertia > 0.0
     if corrected or pair.compliance != 0.0:
-        a = radius(pair.law, contact.delta_m, pair.E, pair.R, S_y, pair.nu)
-        largest = min(LARGEST_CIRCLE * case.beam_depth, LARGEST_CIRCLE_ACROSS * case.beam_width)
-        if a > 0.5 * largest:
-            answer.remarks |= CONTACT_CIRCLE_OUTSIDE_DATA
+        read_size(answer, case, contact, pair)
     x = contact.delta_m / yield_indentation(pair.E, pair.R, S_y)
     if not (x > 1.0 and (corrected or pair.law == _FINITE_ELEMENT)):
         return
@@ -150,6 +154,18 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
     stiffness = case.sphere_youngs_modulus / case.beam_youngs_modulus
     if not LEAST_STIFFNESS <= stiffness <= LARGEST_STIFFNESS:
         answer.remarks |= STIFFNESS_RATIO_OUTSIDE_DATA
+
+
+@compiled
+def read_size(answer: Record, case: Record, contact: Record, pair: Pair) -> None:
+    """Remark a contact that is not small beside the beam's section."""
+    a = radius(pair.law, contact.delta_m, pair.E, pair.R, yield_stress(contact, pair), pair.nu)
+    largest = min(LARGEST_CIRCLE * case.beam_depth, LARGEST_CIRCLE_ACROSS * case.beam_width)
+    if a > 0.5 * largest:
+        answer.remarks |= CONTACT_CIRCLE_OUTSIDE_DATA
+    yields = case.beam_yield_stress * case.beam_width * case.beam_depth
+    if contact.F_m > LARGEST_FORCE * yields:
+        answer.remarks |= CONTACT_FORCE_OUTSIDE_DATA
 
 
 @compiled

@@ -15,6 +15,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import pandas as pd
+import xarray as xr
 from agreement import RESPONSES, ROOT, differences, mean_solid
 from scipy.stats import qmc
 
@@ -92,7 +93,7 @@ DESIGNED = 28
 """Cases of the Sobol design."""
 SEED = 35
 KIND = {"outside_contact_law": "status"} | {
-    name: "remarks" for name in WARNINGS if name.endswith("outside_data")
+    name: "remarks" for name in WARNINGS if name.endswith(("outside_data", "shallow_dent"))
 }
 FLAGS = {name: (STATUS_FLAGS | WARNINGS)[name] for name in KIND}
 """Marks of a run that lies outside the data of law or corrections."""
@@ -145,6 +146,11 @@ def _log(u: float, low: float, high: float) -> float:
     return float(low * (high / low) ** u)
 
 
+def marks(run: xr.Dataset) -> str:
+    """Return the names of the marks of a run."""
+    return " ".join(word for word, (bit, _) in FLAGS.items() if int(run[KIND[word]]) & bit)
+
+
 def row(name: str, impact: il.Impact, meshes: Sequence[float]) -> dict[str, object]:
     """Return what is particular of a case, and the differences from 3-D in %."""
     metal, sphere = impact.beam.material, impact.sphere.material
@@ -162,15 +168,14 @@ def row(name: str, impact: il.Impact, meshes: Sequence[float]) -> dict[str, obje
         "hardening/E": hardening / metal.youngs_modulus,
     }
     beam = il.simulate(impact, il.Discretisation(nodes=201), duration=4e-3)
-    remarks = [word for word, (bit, _) in FLAGS.items() if int(beam[KIND[word]]) & bit]
     try:
         duration = 1.1 * float(beam.contact_duration)
         solid, spread = mean_solid(impact, duration, meshes, name.replace("/", " per "))
     except ValueError as error:  # the contact is too wide for a 3-D mesh
         print(name, error)
-        return case | {"marks": " ".join(remarks)}
+        return case | {"marks": marks(beam)}
     apart = differences(impact, solid) | {"3-D": max(spread.values())}
-    return case | apart | {"marks": " ".join(remarks)}
+    return case | apart | {"marks": marks(beam)}
 
 
 def main(meshes: Sequence[float]) -> None:

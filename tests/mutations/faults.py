@@ -33,6 +33,12 @@ FAULTS = (
         "if crowding < 0.0:",
     ),
     Fault(
+        "contact: a narrow beam that bends without losing force",
+        "contact/prestress.py",
+        "if pair.crowding > 0.0:",
+        "if pair.crowding < 0.0:",
+    ),
+    Fault(
         "contact: stress of bending as tension",
         "contact/prestress.py",
         "along * contact.F_m - left",

@@ -136,6 +136,15 @@ def pair_curve(pair: Pair, delta: float, S_y: float) -> Unloading:
 
 
 @compiled
+def sideways(contact: Record, pair: Pair) -> float:
+    """Return the share of the contact's force that the sides of a narrow beam take off."""
+    if pair.crowding == 0.0 or pair.law != _OF_METALS:
+        return 0.0
+    S_y = yield_stress(contact, pair)
+    return float(finite_element.sideways(contact.delta_m, pair.E, pair.R, S_y, pair.crowding))
+
+
+@compiled
 def load(contact: Record, pair: Pair, delta: float) -> None:
     """Move the furthest point of loading on to delta."""
     contact.delta_m = contact.approach_m = delta

@@ -21,6 +21,12 @@ it by 5.1, 3.1 and -4.2 % from x = 40 on (the fit: 4.7, 3.1, -4.5). With a stres
 at four contact radii below the surface the solve gives what it gives with the even one of half a
 radius.
 
+Between the sides of a narrow beam the contact's plastic zone takes the whole width, and shares its
+metal with bending: with the share sigma of the force that the sides take off (history.sideways) and
+the compression s of the struck face by bending over the yield stress, F becomes F/(1 + q s sigma)
+(q: SHARED). The section in turn gives way to the contact's flow (kink.py). Both numbers were fitted
+to 3-D finite elements of narrow beams (tests/benchmarks/narrow_beams.py).
+
 s_x is that of the moment, s_y that of bending across the width (solver/strip.py); both fall with
 depth, and have a part in the force itself, the half-space's stresses taken out
 (model/contact_compliance.py). Together they are at most at yield.
@@ -28,13 +34,22 @@ depth, and have a part in the force itself, the half-space's stresses taken out
 
 import math
 
-from impactlab.solver.contact.history import MISSED, Pair, bracketed, load, recovered, yield_stress
+from impactlab.solver.contact.history import (
+    MISSED,
+    Pair,
+    bracketed,
+    load,
+    recovered,
+    sideways,
+    yield_stress,
+)
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import radius
 from impactlab.solver.jit import compiled
 from impactlab.solver.types import Record
 
 K_0, K_1, B, C = 0.39, 0.0008, 0.085, 0.23
+SHARED = 0.17
 LARGEST = 320.0
 """x at which the data end."""
 _ITERATIONS, _ROUNDING, _TOUCH, _LEAST = 60, 1e-14, 1e-6, 0.1
@@ -63,6 +78,9 @@ def _yields(contact: Record, pair: Pair) -> tuple[float, float]:
     s_y = (across * contact.F_m - left * contact.stress_across) / S_y
     x = contact.delta_m / yield_indentation(pair.E, pair.R, S_y)
     F = strengthening(x, s_x, s_y) * contact.F_m
+    if pair.crowding > 0.0:
+        bent = max(contact.stress_along / S_y, 0.0)
+        F /= 1.0 + SHARED * bent * sideways(contact, pair)
     recovers = (F / contact.K) ** (1.0 / contact.n)
     return F, contact.delta_r + recovers + pair.compliance * F
 

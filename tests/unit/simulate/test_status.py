@@ -72,6 +72,11 @@ DEFAULT_LAW = replace(il.paper_impact(contact="finite_element"), beam_model="tim
             {"velocity": 5.0, "beam_depth": 0.012, "beam_width": 0.036},
             {"velocity": 5.0, "beam_depth": 0.012, "beam_width": 0.012},
         ),
+        (
+            "contact_force",
+            {"velocity": 7.0, "beam_depth": 0.02, "beam_width": 0.04},
+            {"velocity": 10.5, "beam_depth": 0.02, "beam_width": 0.04},
+        ),
     ],
 )
 def test_an_input_outside_the_data_of_the_contact_law_is_named(cause, inside, outside):
@@ -84,11 +89,25 @@ def test_an_input_outside_the_data_of_the_contact_law_is_named(cause, inside, ou
 
     assert remarks(inside) == 0
     assert remarks(outside) & OUTSIDE_DATA == bit
-    if cause == "contact_circle":
+    if cause in ("contact_circle", "contact_force"):
         assert remarks(outside | {"contact_compliance": "half_space"}) == 0
         return
     assert remarks(outside, contact="stronge") & OUTSIDE_DATA == 0
     assert remarks(outside, velocity=1e-5) & OUTSIDE_DATA == 0
+
+
+def test_a_dent_that_is_shallow_beside_the_indentation_is_remarked():
+    bit = WARNINGS["shallow_dent"][0]
+    for velocity, contact, remarked in (
+        (0.05, DEFAULT_LAW.contact, True),
+        (0.5, DEFAULT_LAW.contact, False),
+        (0.05, "jackson_green", False),
+    ):
+        run = il.simulate(
+            replace(DEFAULT_LAW, velocity=velocity, contact=contact), GRID, duration=3e-3
+        )
+        assert (0.0 < run.permanent_indentation < 0.2 * run.maximum_indentation) or not remarked
+        assert bool(run.remarks.item() & bit) == remarked
 
 
 def test_words_of_remarks_have_the_limits_of_the_law():
@@ -99,8 +118,10 @@ def test_words_of_remarks_have_the_limits_of_the_law():
         ("LEAST_HARDNESS", "sphere_yield"),
         ("LEAST_STIFFNESS LARGEST_STIFFNESS", "stiffness_ratio"),
         ("LARGEST_CIRCLE LARGEST_CIRCLE_ACROSS", "contact_circle"),
+        ("LARGEST_FORCE", "contact_force"),
+        ("LEAST_DENT", "shallow_dent"),
     ):
-        words = WARNINGS[f"{cause}_outside_data"][1]
+        words = (WARNINGS.get(cause) or WARNINGS[f"{cause}_outside_data"])[1]
         for name in names.split():
             assert f" {getattr(finite_element, name):g}" in words, name
 
