@@ -12,7 +12,7 @@ from impactlab.analysis.rare_event import Estimate, RareEventVerdict
 from impactlab.analysis.rare_event import estimate as estimated
 from impactlab.files import write_netcdf
 from impactlab.methods.distributions import Choice
-from impactlab.methods.hypercube import Correlations, Hypercube, correlation_matrix
+from impactlab.methods.hypercube import FEWEST_PLACED, Correlations, Hypercube, correlation_matrix
 from impactlab.methods.runs import usable
 from impactlab.methods.sampling import RandomSample
 from impactlab.model.checks import integer
@@ -30,9 +30,7 @@ from impactlab.types import Floats
 from impactlab.validation.errors import Problem, StudyError
 from impactlab.verdicts import flagged
 
-_FEWEST = 200  # runs per level
-FEWEST_RUNS = 300
-"""Least number that all runs may be limited to, where a Gaussian process places them."""
+SAMPLES, _FEWEST = 500, 200  # runs per level, by default and at least
 _MATTERS = 0.5  # standard deviations from which on the answer names a parameter
 
 
@@ -175,7 +173,7 @@ def check_estimate(
     if not 0.01 <= target <= 0.5:
         message = "must be from 0.01 to 0.5"
         raise ValueError(f"{owner}: coefficient_of_variation = {target!r}: {message}")
-    return samples, integer(owner, "runs", runs, FEWEST_RUNS if surrogate else 4 * samples)
+    return samples, integer(owner, "runs", runs, FEWEST_PLACED if surrogate else 4 * samples)
 
 
 def cost(study: AnyStudy, folder: Path, workers: int, runs: int) -> Cost:
@@ -314,4 +312,6 @@ def _answer(result: Estimate, solver: LimitRuns) -> str:
         elif abs(score) >= _MATTERS:
             value = solver.stated(name, values[name][0])
             places.append(f"{solver.long_name(name)} {score:+.1f} sd ({value})".replace("-", "−"))
+    if not places:  # the middle of all scores lies beyond
+        return text
     return f"{text}\nThe likeliest way to exceed it: {', '.join(places)}."

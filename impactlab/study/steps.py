@@ -26,8 +26,9 @@ from impactlab.files import (
     write_csv,
     write_netcdf,
 )
+from impactlab.methods.hypercube import Hypercube
 from impactlab.provenance import provenance
-from impactlab.study import CALIBRATION, PARTS, REFINEMENT, RESOLUTION, SHARDS, TRIALS
+from impactlab.study import CALIBRATION, PARTS, RARE_EVENT, REFINEMENT, RESOLUTION, SHARDS, TRIALS
 from impactlab.study.ownership import check_unclaimed, same_runs, study_file, write_runs
 from impactlab.study.schema.declarations import (
     AnyStudy,
@@ -119,7 +120,8 @@ def run(
 ) -> None:
     """Price a study, resolve its discretisation, draw and solve its runs; write them to `path`.
 
-    The rows of a table are its runs. runs: its design, where it is drawn already. force: whatever
+    Runs placed for a probability (`until` of a Latin hypercube) leave rare_event.nc beside it. The
+    rows of a table are its runs. runs: its design, where it is drawn already. force: whatever
     it costs. replace: whatever study has results there. tell: of `resolved`.
 
     Raises StudyError where a limit is exceeded, for wrong measurements, and as `resolved` and
@@ -139,6 +141,14 @@ def run(
     if runs is None:
         runs = design(declared or resolved(study, path.parent, engine, tell) or study)
     solve(runs.assign_attrs(study_file=source), path, engine)
+    if isinstance(study.sampling, Hypercube) and (until := study.sampling.until):
+        from impactlab.study.rare_event import SAMPLES, rare_event
+
+        settings = SAMPLES, until.runs, until.coefficient_of_variation
+        result = rare_event(study, path.parent, engine, *settings, surrogate=True)
+        path.with_name(f"{RARE_EVENT}.html").unlink(missing_ok=True)  # of the result before
+        for line in result.attrs["answer"].splitlines():
+            log.info("%s", line)
 
 
 def priced(
