@@ -19,13 +19,15 @@ from impactlab.model.checks import integer
 from impactlab.model.quantities import engineering
 from impactlab.provenance import provenance
 from impactlab.study import RARE_EVENT, steps
+from impactlab.study.adaptive.recommendation import AXES, grid_uncertainty
 from impactlab.study.design import design
 from impactlab.study.engine import Engine
 from impactlab.study.estimate import Estimate as Cost
 from impactlab.study.estimate import estimate as cost_of
 from impactlab.study.execute import execute
 from impactlab.study.ownership import check_unclaimed, study_file
-from impactlab.study.schema.declarations import AnyStudy
+from impactlab.study.schema.consistency import further_models
+from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
 from impactlab.types import Floats
 from impactlab.validation.errors import Problem, StudyError
 from impactlab.verdicts import flagged
@@ -140,6 +142,21 @@ class LimitRuns(ScoreRuns):
         solved = execute(self.design(scores), self.folder, self.engine)
         self.units = str(solved[self.response].attrs.get("units", "1"))
         return np.asarray(usable(solved, self.response).values[0])
+
+    def numerical_error(self, scores: Floats) -> float:
+        """Return the numerical uncertainty of the response at scores (parameter,), in its unit.
+
+        It is infinite where it is unknown, and NaN for a function or a varied discretisation, which
+        have none.
+        """
+        study = self.declared
+        if not isinstance(study, ImpactStudy) or {*AXES} & {*self.sampling.varied}:
+            return np.nan
+        if further_models(study):  # of a wing, whose mesh has other axes
+            return np.inf
+        cases = {name: column.tolist() for name, column in self.values(scores[np.newaxis]).items()}
+        errors = grid_uncertainty(study, cases, self.folder, self.engine)
+        return float(errors.sel(response=self.response).item())
 
     @property
     def event(self) -> str:
