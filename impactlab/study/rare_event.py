@@ -33,6 +33,8 @@ from impactlab.validation.errors import Problem, StudyError
 from impactlab.verdicts import flagged
 
 SAMPLES, _FEWEST = 500, 200  # runs per level, by default and at least
+_PER_PARAMETER = 25
+"""Least number of runs per level and parameter: with half of it probabilities are too small."""
 _MATTERS = 0.5  # standard deviations from which on the answer names a parameter
 
 
@@ -193,6 +195,13 @@ def check_estimate(
     return samples, integer(owner, "runs", runs, FEWEST_PLACED if surrogate else 4 * samples)
 
 
+def check_per_parameter(owner: str, samples: int, parameters: int) -> None:
+    """Raise ValueError for too few runs per level to move in so many parameters."""
+    if samples < (fewest := _PER_PARAMETER * parameters):
+        message = f"must be at least {fewest}, which is {_PER_PARAMETER} per parameter that varies"
+        raise ValueError(f"{owner}: samples = {samples}: {message}")
+
+
 def cost(study: AnyStudy, folder: Path, workers: int, runs: int) -> Cost:
     """Return the cost of at most so many runs of a study. Raises StudyError as LimitRuns.of."""
     limited_sample(study)
@@ -228,6 +237,7 @@ def rare_event(
             raise ValueError(f"rare_event: surrogate: {message}, and {event[1]} vary: leave it out")
         result = learned_estimate(*event, **settings)
     else:
+        check_per_parameter("rare_event", samples, event[1])
         result = estimated(*event, samples=samples, **settings)
     dataset = _dataset(result, solver).assign_attrs(
         study.attributes() | provenance(),

@@ -27,7 +27,12 @@ from impactlab.provenance import provenance
 from impactlab.study import SIZING
 from impactlab.study.engine import Engine
 from impactlab.study.ownership import study_file
-from impactlab.study.rare_event import LimitRuns, check_estimate, limited_sample
+from impactlab.study.rare_event import (
+    LimitRuns,
+    check_estimate,
+    check_per_parameter,
+    limited_sample,
+)
 from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown
@@ -75,6 +80,7 @@ def sizing(
     varied = [*solver.sampling.varied]
     columns = [varied.index(variable) for variable in variables]
     others = [index for index in range(len(varied)) if index not in columns]
+    check_per_parameter("size", samples, len(others))
 
     def solve(designs: Floats, scores: Floats) -> Floats:
         points = np.empty((len(designs), len(varied)))

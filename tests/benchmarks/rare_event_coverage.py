@@ -48,6 +48,7 @@ def opposite(parameters: int) -> Case:
 
 CASES: dict[str, Callable[[], Case]] = {
     "plane8": lambda: plane(8, 1e-5),
+    "plane20": lambda: plane(20, 1e-5),
     "plane40": lambda: plane(40, 1e-5),
     "opposite6": lambda: opposite(6),
     "ring3": lambda: Case(lambda u: (u**2).sum(axis=1), 3, chi2.isf(1e-3, 3), 1e-3),
@@ -57,13 +58,14 @@ CASES: dict[str, Callable[[], Case]] = {
 def measure(name: str, seeds: int, surrogate: bool) -> str:
     """Return the line of a case."""
     case, results = CASES[name](), []
-    settings = {"most": 6000, "target": 0.1, "confidence": 0.95}
+    samples = max(500, 25 * case.parameters)
+    settings = {"most": max(6000, 10 * samples), "target": 0.1, "confidence": 0.95}
     for seed in range(1000, 1000 + seeds):
         event = case.response, case.parameters, case.limit
         results.append(
             learned_estimate(*event, seed=seed, **settings)
             if surrogate
-            else estimate(*event, seed=seed, samples=500, **settings)
+            else estimate(*event, seed=seed, samples=samples, **settings)
         )
     covered = [result.low <= case.probability <= result.high for result in results]
     stated = [result.coefficient_of_variation for result in results]

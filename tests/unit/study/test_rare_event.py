@@ -146,3 +146,12 @@ def test_a_process_of_many_parameters_is_refused(tmp_path):
     many = study(tmp_path, function, sampling=sampling)
     with pytest.raises(ValueError, match="at most 16 parameters, and 17 vary"):
         il.rare_event(many, surrogate=True, workers=1)
+
+
+def test_many_parameters_take_more_runs_per_level(tmp_path):
+    names = [f"u{number}" for number in range(30)]
+    total = eval(f"lambda {', '.join(names)}: {' + '.join(names)}")
+    sampling = il.Pawn(samples=128, parameters={name: il.Normal(0, 1) for name in names})
+    declared = study(tmp_path, function=total, sampling=sampling, limits={"value": 20})
+    with pytest.raises(ValueError, match="samples = 500: must be at least 750, which is 25 per"):
+        il.rare_event(declared, workers=1)
