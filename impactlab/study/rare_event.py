@@ -33,6 +33,8 @@ from impactlab.validation.errors import Problem, StudyError
 from impactlab.verdicts import flagged
 
 SAMPLES, _FEWEST = 500, 200  # runs per level, by default and at least
+_DEFAULTS = {"samples": SAMPLES, "runs": 6000, "variation": 0.1}
+"""Of the options of `impactlab rare`."""
 _PER_PARAMETER = 25
 """Least number of runs per level and parameter: with half of it probabilities are too small."""
 _MATTERS = 0.5  # standard deviations from which on the answer names a parameter
@@ -245,7 +247,14 @@ def rare_event(
         confidence=study.analysis.confidence,
         target=target,
         words=solver.sampling.words,
-        arguments=" --surrogate" if surrogate else "",
+        arguments=" --surrogate" * surrogate
+        + "".join(
+            f" --{name} {value:g}"
+            for (name, default), value in zip(
+                _DEFAULTS.items(), (samples, runs, target), strict=True
+            )
+            if value != default
+        ),
         answer=_answer(result, solver),
     )
     write_netcdf(dataset, folder / f"{RARE_EVENT}.nc", "rare_event")

@@ -48,6 +48,7 @@ def test_a_study_places_runs_until_its_probability_is_known(tmp_path):
     assert result.answer.splitlines()[0].removesuffix(".") in page
     stored = xr.open_dataset(grown.folder / "rare_event.nc")
     assert stored.probability.item() == result.probability.item()
+    assert stored.attrs["arguments"] == " --surrogate --runs 700"
     assert result.low < norm.sf(6 / np.sqrt(2)) < result.high
 
 
