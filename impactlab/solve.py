@@ -31,7 +31,7 @@ from impactlab.solver.contact import NUMBERED
 from impactlab.solver.contact.history import CONTACT
 from impactlab.solver.event_tracker import EVENTS
 from impactlab.solver.jit import FOLDER
-from impactlab.solver.kernels import is_extended, kernel_of
+from impactlab.solver.kernels import is_extended, kernel_of, step_counter
 from impactlab.solver.outputs import DIVERGED, SERIES, blank, by_strike
 from impactlab.solver.section import FibreSection, make_section
 from impactlab.solver.sphere_table import Table, make_table
@@ -84,10 +84,12 @@ def too_short(cases: Any, status: Any) -> str:
 _COMPILE = """
 import pickle
 from dataclasses import replace
+import numpy as np
 import impactlab as il
 from impactlab.model.case_table import case_table
 from impactlab.model.own_law import adopt
-from impactlab.solve import solve
+from impactlab.model.section import fibre_table
+from impactlab.solve import solve, step_counts
 grid = il.Discretisation(nodes=5, scheme={scheme!r})
 impact = replace(il.paper_impact(), further_spheres={spheres!r})
 varied = {{"beam_model": [{model!r}], "contact": [{law!r}]}}
@@ -96,7 +98,7 @@ for name, packed in {outside!r}.items():
     law = pickle.loads(packed)
     adopt(law)
     cases[name], cases["contact_prestress"] = law.number, {extended!r}
-solve(cases)
+{call}
 """
 
 _OWN = {"contact": NUMBERED, "beam_flow_law": FLOW_LAWS_OUTSIDE}
@@ -110,13 +112,15 @@ def solve(
     profiles: bool = False,
     strikes: int = 0,
     by_sphere: bool = False,
+    steps: np.ndarray[Any, Any] | None = None,
 ) -> dict[str, np.ndarray[Any, Any]]:
     """Run the kernels over a case table, on the calling thread and without the GIL.
 
     samples: length of each history (0: none). profiles: keep the fields along the beam, for which
     all cases must share nodes and points; raises ValueError where they do not. strikes: the
     largest number that a case has, or more, to keep what solver.outputs.SERIES has of each (0:
-    none). by_sphere: keep the answers of further spheres. Returns by name, of R runs: the fields of
+    none). by_sphere: keep the answers of further spheres. steps: number of time steps of each run,
+    (R,) of int64, by default as many as the scheme needs. Returns by name, of R runs: the fields of
     solver.outputs.RESPONSE, (R,); histories, (R, samples); profiles, (R, nodes, points), or
     (R, nodes) for the deflection; series, (R, strikes), NaN beyond those of the case, and
     variables.OF_STRIKES; of several spheres, variables.BY_SPHERE, (R, spheres) or
@@ -138,7 +142,8 @@ def solve(
     further = [make_table(cases, samples)] if cases["further"].any() else []
     # those from outside have kernels of their own
     laws = [np.where(cases[name] < OUTSIDE, 0, cases[name]) for name in _OWN]
-    kinds = np.stack([models, schemes, is_extended(cases), mode_keys(cases), *laws])
+    extended_cases = is_extended(cases) | (strikes > 0)
+    kinds = np.stack([models, schemes, extended_cases, mode_keys(cases), *laws])
     starts = np.flatnonzero(np.diff(kinds, prepend=-1).any(axis=0))
     for start, end in itertools.pairwise((*starts, runs)):
         model, scheme, extended, _, *own = kinds[:, start].tolist()
@@ -147,8 +152,14 @@ def solve(
         kind = [BEAM_MODELS[model]], [SCHEMES[scheme]], [bool(extended)], [bool(further)]
         compile_kernels(*kind, laws=[tuple(own)])
         modes = mode_table(cases[start])
+        fastest = further[0].fastest[start:end] if further else cases[start:end]
+        if steps is None:
+            counts = step_counts(cases[start:end], fastest, table[start:end], own[0])
+        else:
+            counts = steps[start:end]
         kernel_of(model, scheme, bool(extended), bool(further), *own)(
             cases[start:end],
+            counts,
             table[start:end],
             _rows(further[0], start, end, modes) if further else modes,
             *(array[start:end] for array in arrays),
@@ -168,6 +179,18 @@ def solve(
         columns["plastic_strain"], columns["equivalent_plastic_strain"] = strains
         columns["deflection"] = deflection
     return columns
+
+
+def step_counts(
+    cases: np.ndarray[Any, Any],
+    fastest: np.ndarray[Any, Any],
+    fibres: np.ndarray[Any, Any],
+    law: int,
+) -> np.ndarray[Any, Any]:
+    """Return the number of time steps of each run; see stability.count_steps."""
+    steps = np.empty(cases.size, dtype=np.int64)
+    step_counter(law)(cases, fastest, fibres, steps)
+    return steps
 
 
 def _rows(table: Table, start: int, end: int, modes: np.ndarray[Any, Any]) -> Table:
@@ -217,7 +240,10 @@ def compile_kernels(
         models = BENDING_MODELS if scheme == "modal" else WAVE_MODELS if spheres else BEAM_MODELS
         if model in models:
             number = BEAM_MODELS.index(model), SCHEMES.index(scheme)
-            programs[kernel_of(*number, more, spheres, *own)] = _COMPILE.format(**kind)
+            kernel, counter = kernel_of(*number, more, spheres, *own), step_counter(own[0])
+            programs[kernel] = _COMPILE.format(**kind, call="solve(cases, steps=np.array([1]))")
+            call = f"step_counts(cases, cases, fibre_table(cases), {own[0]})"
+            programs[counter] = _COMPILE.format(**kind, call=call)
     precompile(programs)
     return FOLDER
 

@@ -26,9 +26,9 @@ from impactlab.solver import (
     timoshenko,
     von_karman,
 )
-from impactlab.solver.beam import BeamGrid, half_node, make_beam, rest_beam
+from impactlab.solver.beam import half_node, make_beam, rest_beam
 from impactlab.solver.contact import NUMBERED
-from impactlab.solver.contact.history import Pair, make_pair
+from impactlab.solver.contact.history import make_pair
 from impactlab.solver.contact.switch import DAMPED, substitutes
 from impactlab.solver.fibre_plasticity import (
     keep_ends_elastic,
@@ -40,7 +40,7 @@ from impactlab.solver.jit import allocating, compiled, inlined
 from impactlab.solver.leapfrog import time_loop
 from impactlab.solver.section import FibreSection, Room, cut_section, make_room, with_rate
 from impactlab.solver.several_spheres import with_spheres
-from impactlab.solver.stability import discretise, grid_of, struck_node
+from impactlab.solver.stability import count_steps, divided, grid_of, struck_node
 from impactlab.solver.state import BeamModel, State
 from impactlab.solver.strikes import departure, resting, resting_once
 from impactlab.solver.types import CONTACT_PATCH, MODAL, Array, Record
@@ -104,12 +104,12 @@ def _run(model: BeamModel, extended: bool, rest: Callable[..., int]) -> Callable
     ) -> int:
         """Solve a case from rest, and fill in its answer; see march for what is returned."""
         now = int(np.int64(0))
-        for strike in range(case.strikes):
-            if strike > 0 and not leaves(state, events):
+        for strike in range(case.strikes if extended else 1):
+            if extended and strike > 0 and not leaves(state, events):
                 answer.status = outputs.EARLIER_STRIKE_UNFINISHED
                 return now
             interval = 0
-            if case.strike_interval > 0.0 and strike < case.strikes - 1:
+            if extended and case.strike_interval > 0.0 and strike < case.strikes - 1:
                 interval = max(round(case.strike_interval / state.grid.dt), steps + 1)
             now = march(case, state, contact, events, samples, steps, strike, interval, now)
             if largest_deflection is not None:
@@ -117,7 +117,7 @@ def _run(model: BeamModel, extended: bool, rest: Callable[..., int]) -> Callable
             if now < 0:
                 answer.status = outputs.DIVERGED
                 return now
-            if case.strikes > 1:
+            if extended and case.strikes > 1:
                 now = rest(case, answer, contact, events, series, state, strike, now)
         answer.energy_error = events.energy_error
         if answer.energy_error > WORST_ENERGY_ERROR:
@@ -138,50 +138,35 @@ def _run(model: BeamModel, extended: bool, rest: Callable[..., int]) -> Callable
     return run
 
 
-def _division(several: bool) -> Callable[..., tuple[BeamGrid, int]]:
-    """Return a function that divides length and time of run r; several: whether of spheres."""
-
-    @inlined
-    def divide(
-        case: Record, pair: Pair, section: FibreSection, table: Any, r: int
-    ) -> tuple[BeamGrid, int]:
-        if several:
-            fast, steps = discretise(table.fastest[r], pair, section)
-            return grid_of(case, fast.dx, fast.dt, section.stiffness), steps
-        return discretise(case, pair, section)
-
-    return divide
-
-
 def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[..., None]:
     """Return the kernel of a model of the beam.
 
     extended: with a load over the contact patch, strain rate, flow law, bending across the width,
-    stress beneath the contact and damping of contact or beam, which other kernels are free of, so
-    that they compile sooner.
+    stress beneath the contact, damping of contact or beam, several strikes and the beam at rest
+    after them, which other kernels are free of, so that they compile sooner.
 
-    It solves every case of R, by records and arrays of as many rows. cases: CASE records. fibres:
-    as by model.section.fibre_table. table: of modes, by model.beam_modes, which all cases share, or
-    empty; with further spheres, that of several_spheres.py. answers: blank RESPONSE records,
-    filled. contacts, events: zeros, CONTACT and EVENTS records to work in. samples: shape (R, 5,
-    S), filled with force, mid-span deflection, mid-span curvature, sphere displacement and
-    indentation at S equal intervals from 0 to the duration, of the last strike; S = 0 for none.
-    series: shape (R, n, len(SERIES)), filled with outputs.SERIES of each of n strikes; n = 0 for
-    none. deflection (R, nodes), plastic_strain and peeq (R, nodes, P // 2): filled with the beam's
-    final state, at rest after several strikes; length 0 for none. A model whose sections have P
-    fibres, outermost below first, fills (R, nodes, P). A run that diverges leaves NaN and its
-    status.
+    It solves every case of R, by records and arrays of as many rows. cases: CASE records. steps: as
+    by count_steps. fibres: as by model.section.fibre_table. table: of modes, by model.beam_modes,
+    which all cases share, or empty; with further spheres, that of several_spheres.py. answers:
+    blank RESPONSE records, filled. contacts, events: zeros, CONTACT and EVENTS records to work in.
+    samples: shape (R, 5, S), filled with force, mid-span deflection, mid-span curvature, sphere
+    displacement and indentation at S equal intervals from 0 to the duration, of the last strike; S
+    = 0 for none. series: shape (R, n, len(SERIES)), filled with outputs.SERIES of each of n
+    strikes; n = 0 for none. deflection (R, nodes), plastic_strain and peeq (R, nodes, P // 2):
+    filled with the beam's final state, at rest after several strikes; length 0 for none. A model
+    whose sections have P fibres, outermost below first, fills (R, nodes, P). A run that diverges
+    leaves NaN and its status.
     """
     make, renew, take, deflect = model.make, model.renew, model.take, model.deflect
     join, read = (None, None) if model.further is None else model.further[:2]
-    divide = _division(join is not None)
     rest = resting(model)
-    run, rest_single = _run(model, extended, rest), resting_once(rest)
+    run, rest_single = _run(model, extended, rest), resting_once(rest, extended)
     of_fibres = make_room, _section_at_rate if extended else cut_section
     make_section_room, cut = model.section or of_fibres
 
     def kernel(
         cases: Array,
+        steps: Array,
         fibres: Array,
         table: Any,
         answers: Array,
@@ -206,7 +191,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
             for r in range(start, stop):
                 case, pair = cases[r], make_pair(cases[r])
                 section = cut(case, fibres[r], room)
-                grid, steps = divide(case, pair, section, table, r)
+                grid = divided(case, section.stiffness, steps[r])
                 rest_beam(beam)
                 rest_plastic_state(plastic, section)
                 keep_ends_elastic(plastic, grid)
@@ -221,7 +206,14 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
                     together = join(alone, table, r, case)
                     state = State(pair, section, grid, beam, plastic, together)
                 now = run(
-                    case, answers[r], contacts[r], events[r], samples[r], series[r], state, steps
+                    case,
+                    answers[r],
+                    contacts[r],
+                    events[r],
+                    samples[r],
+                    series[r],
+                    state,
+                    steps[r],
                 )
                 if read is not None:
                     read(state, case, answers[r], table.answers[r])
@@ -275,6 +267,7 @@ def is_extended(cases: Array) -> Array:
     """Return which cases need an extended kernel; of what, see _kernel."""
     extended = (cases["load"] == CONTACT_PATCH) | (cases["beam_rate_coefficient"] > 0.0)
     extended |= (cases["beam_rate_sensitivity"] > 0.0) | (cases["beam_flow_law"] > 0)
+    extended |= cases["strikes"] > 1
     extended |= (cases["width_inertia"] > 0.0) | (cases["contact_prestress"] > 0)
     for name in RESISTANCES:
         extended |= cases[name] > 0.0
@@ -310,6 +303,11 @@ def kernel_of(
 
 _COPIES: dict[tuple[int, int], Copies] = {}
 _COPYING = Lock()  # threads of one process share the copies
+
+
+def step_counter(law: int = 0) -> Callable[..., None]:
+    """Return the kernel that counts time steps, for a contact law from outside if not 0."""
+    return _with_laws(count_steps, law, 0) if law else count_steps
 
 
 def _with_laws(kernel: Callable[..., None], law: int, flow_law: int) -> Callable[..., None]:

@@ -36,7 +36,7 @@ of the mass, which is central, and that of modes (resisted_modes.py) change noth
 import math
 
 from impactlab.solver.beam import PINNED, SPRUNG, BeamGrid, half_spacings, make_grid
-from impactlab.solver.contact.history import PANELS, Pair, loading_work, pair_curve
+from impactlab.solver.contact.history import PANELS, Pair, loading_work, make_pair, pair_curve
 from impactlab.solver.contact.rate import MODULUS, STRAIN
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import damping, is_damped, radius
@@ -45,7 +45,7 @@ from impactlab.solver.lumped import mid_span
 from impactlab.solver.responses import LARGEST_COMPLIANCE
 from impactlab.solver.section import FibreSection
 from impactlab.solver.strain_rate import rate_factor
-from impactlab.solver.types import MODAL, SPRING_MASS, TIMOSHENKO, VON_KARMAN, Record
+from impactlab.solver.types import MODAL, SPRING_MASS, TIMOSHENKO, VON_KARMAN, Array, Record
 
 _GROWTH, _COARSE_GROWTH = 1.25, 2.0
 _SAFETY = 2.0
@@ -231,9 +231,35 @@ def struck_node(case: Record) -> int:
 
 
 @compiled
+def divided(case: Record, EI: float, steps: int) -> BeamGrid:
+    """Return the grid of a case's beam, of bending stiffness EI (N m2), with so many time steps."""
+    return grid_of(case, case.beam_span / (case.nodes - 1), case.duration / steps, EI)
+
+
+@compiled
+def step_count(case: Record, pair: Pair, EI: float) -> int:
+    """Return the number of time steps of a case, whose beam has the bending stiffness EI (N m2)."""
+    dx = case.beam_span / (case.nodes - 1)
+    return math.ceil(case.duration / (case.courant * largest_time_step(case, pair, EI, dx)))
+
+
+@compiled
 def discretise(case: Record, pair: Pair, section: FibreSection) -> tuple[BeamGrid, int]:
     """Return (grid, number of time steps) of a case."""
-    dx = case.beam_span / (case.nodes - 1)
-    dt = case.courant * largest_time_step(case, pair, section.stiffness, dx)
-    steps = math.ceil(case.duration / dt)
-    return grid_of(case, dx, case.duration / steps, section.stiffness), steps
+    steps = step_count(case, pair, section.stiffness)
+    return divided(case, section.stiffness, steps), steps
+
+
+@compiled
+def count_steps(cases: Array, fastest: Array, fibres: Array, steps: Array) -> None:
+    """Fill in the number of time steps of each case: a kernel of its own, compiled beside others.
+
+    fastest: the cases, with the sphere that asks for the smallest step. fibres: as by
+    model.section.fibre_table.
+    """
+    for r in range(cases.size):
+        EI = 0.0
+        for j in range(cases[r].points // 2):
+            z = fibres[r, 0, j]
+            EI += cases[r].beam_youngs_modulus * fibres[r, 1, j] * z * z
+        steps[r] = step_count(fastest[r], make_pair(cases[r]), EI)

@@ -55,14 +55,17 @@ def resting(model: BeamModel) -> Callable[..., int]:
     return rest
 
 
-def resting_once(rest: Callable[..., int]) -> Callable[..., None]:
-    """Return a function that puts a beam to rest after its only strike, where that is kept."""
+def resting_once(rest: Callable[..., int], extended: bool) -> Callable[..., None]:
+    """Return a function that puts a beam to rest after its only strike, where that is kept.
+
+    extended: only kernels that are do; in others it does nothing.
+    """
 
     @compiled
     def rest_single(
         case: Record, answer: Record, contact: Record, events: Record, series: Array, state: State
     ) -> None:
-        if case.strikes == 1 and series.shape[0] > 0:
+        if extended and case.strikes == 1 and series.shape[0] > 0:
             rest(case, answer, contact, events, series, state, 0, 0)
 
     return rest_single

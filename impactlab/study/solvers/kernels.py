@@ -155,7 +155,8 @@ def prepare(design: xr.Dataset) -> None:
         np.atleast_1d(design.get(name, getattr(impact.beam, name))) > 0.0 for name in RESISTANCES
     ]
     by_rate = rate > 0.0, sensitivity > 0.0, ~np.isin(flow, FLOW_LAWS)
-    options = np.meshgrid(patch, *by_rate, strip, stress, damped, *resisted)
+    repeated = np.atleast_1d("most_strikes" in design.attrs)
+    options = np.meshgrid(patch, *by_rate, strip, stress, damped, repeated, *resisted)
     extended = np.unique(np.logical_or.reduce(options)).tolist()
     numbers = [law.number for law in own] + [0] * bool(np.isin(laws, LAWS).any())
     of_flow = [law.number for law in FLOW_LAW_NAMES.outside(flow)]

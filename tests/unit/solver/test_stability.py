@@ -6,10 +6,16 @@ import pytest
 import impactlab as il
 from impactlab.model.case_table import case_table
 from impactlab.model.parameters import with_values
-from impactlab.solve import fibre_section, solve
+from impactlab.model.section import fibre_table
+from impactlab.solve import fibre_section, solve, step_counts
 from impactlab.solver.contact import CONTACT_LAWS
 from impactlab.solver.contact.history import make_pair
-from impactlab.solver.stability import _stiffness, largest_time_step, stiffest_contact
+from impactlab.solver.stability import (
+    _stiffness,
+    discretise,
+    largest_time_step,
+    stiffest_contact,
+)
 from impactlab.variables import STATUS_FLAGS
 from impactlab.verification.solutions.contact_laws import LAWS as REFERENCE
 from impactlab.verification.solutions.contact_laws import joints, law_on_half_space
@@ -141,6 +147,26 @@ def test_stable_at_the_largest_time_step_and_not_5_percent_above(rule, points):
     assert stable["energy_error"] < 0.02
     assert not stable["status"] & STATUS_FLAGS["diverged"][0]
     assert unstable["status"] == STATUS_FLAGS["diverged"][0]
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"beam_model": "timoshenko", "beam_shape": "box", "beam_wall_thickness": 4e-3},
+        {"beam_shape": "laminate", "beam_layers": "0.7 70e9 320e6 2700"},
+        {"beam_model": "von_karman"},  # whose section has the fibres below the axis, too
+    ],
+)
+def test_steps_are_counted_for_the_section_that_is_bent(values):
+    values = {"nodes": 61, "rule": "layers"} | values
+    impact, grid = with_values(il.paper_impact(), il.Discretisation(), values)
+    cases = case_table(impact, grid, duration=1e-3).repeat(2)
+    cases["points"] = 4, 10
+    counts = step_counts(cases, cases, fibre_table(cases), 0)
+    for case, count in zip(cases, counts, strict=True):
+        assert count == discretise(case, make_pair(case), fibre_section(case))[1]
+    assert counts[0] != counts[1]  # the rule's stiffness counts
 
 
 def test_the_papers_bar_wave_limit_diverges():
