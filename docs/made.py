@@ -23,6 +23,7 @@ from impactlab.figures.draw import OVERVIEW
 from impactlab.figures.record import listed
 from impactlab.files import read_netcdf, write_netcdf
 from impactlab.report.page import leading
+from impactlab.report.questions import answers_beside
 from impactlab.report.results import FINDINGS
 from impactlab.report.verification import uncertainty
 from impactlab.study import steps
@@ -42,7 +43,7 @@ INCH = 140
 """Pixels of a page per inch of a figure: as wide as the text, or half as wide."""
 WORKERS = min(4, os.cpu_count() or 1)
 SHOWN = ("velocity", "contact_laws", "shear", "strike_position", "supports", "strikes", "layers",
-         "material", "model_form", "sobol_slow", "sobol", "sobol_fast", "sobol_large",
+         "material", "model_form", "sobol_slow", "sobol", "sobol_fast", "sobol_large", "rare_dent",
          "multifidelity",
          "discretisation", "time_step", "ishigami", "smoke")  # fmt: skip
 FIRST = {
@@ -51,6 +52,7 @@ FIRST = {
     "fig07": "force_indentation",
     "fig08": "contact_duration",
     "fig10": "plastic_strain",
+    "rare_dent": "likeliest_way",
     "shear": "shear",
     "velocity": "contact_duration",
     "witness": "witness",
@@ -147,6 +149,12 @@ def _solved(study: il.Study, workers: int = 1) -> Shown:
     analysis = read_netcdf(study.folder / "analysis.nc", "analysis")
     answers, compared = il.answers(runs, analysis), witness.findings(runs, analysis)
     captions = listed(study.folder / "figures")
+    for _, finding, page in answers_beside(runs, study.folder):
+        answers = [finding, *answers]
+        drawings = (study.folder / page).with_suffix("") / "figures"
+        for name, caption in listed(drawings).items():
+            captions[name] = caption
+            shutil.copyfile(drawings / f"{name}.png", study.folder / "figures" / f"{name}.png")
     first = FIRST.get(study.name) or leading(captions)
     for sentence in compared:  # the answer is not said again beneath the figure
         captions[first]["caption"] = captions[first]["caption"].replace(f" {sentence}", "")

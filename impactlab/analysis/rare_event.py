@@ -12,7 +12,7 @@ the last gives a second, independent estimate as a check.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy  # its stats are loaded when first used
@@ -95,6 +95,7 @@ class Estimate:
     exceeds the limit, or all do. check: the estimate of the sample before. levels: limits of the
     levels. design_point: scores of the likeliest run beyond the limit, (parameter,). runs: number
     of all runs. missing: of the last sample. placed: runs by which a Gaussian process was learned.
+    outputs, weights: of the last sample, (run,).
     """
 
     verdict: RareEventVerdict
@@ -111,6 +112,12 @@ class Estimate:
     last_sample: int = 0
     placed: int = 0
     design_point: Floats | None = None
+    outputs: Floats = field(default_factory=lambda: np.empty(0))
+    weights: Floats = field(default_factory=lambda: np.empty(0))
+
+    def beyond(self, limit: float) -> float:
+        """Return the probability beyond another limit close by, from the same runs."""
+        return float((self.weights * (self.outputs > limit)).sum()) / self.weights.size
 
 
 def estimate(
@@ -203,6 +210,7 @@ def judged(
     return Estimate(
         verdict, runs + ray, levels, answered, low, high, value, most_of, check[0],
         variation, int(gaps.sum()), outputs.size, design_point=point,
+        outputs=outputs, weights=np.exp(log_ratio),
     )  # fmt: skip
 
 

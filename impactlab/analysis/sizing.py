@@ -46,6 +46,11 @@ class SizingVerdict(Verdict):
 
     USABLE = True, "runs at the design confirm its probability"
     AT_END = True, "runs confirm the best end of the ranges: wider ones may hold a better design"
+    NUMERICAL = (
+        False,
+        "the numerical error may lift the probability above the one wanted: take a finer "
+        "discretisation",
+    )
     UNREACHED = False, "even the best end of the ranges hardly reaches the limit: no run there did"
     UNSOUND = False, "the probability at the design is not to be relied on"
     NOT_CONVERGED = False, "no estimate allowed meets the probability: allow more runs"

@@ -31,7 +31,7 @@ def rare_event(
     study : Study
         Sample of any method, of which the distributions and the seed count, with one limit.
     samples : int, default 500
-        Number of runs per level, at least 200.
+        Number of runs per level, at least 200, and 25 per parameter that varies.
     runs : int, default 6000
         Largest number of all runs, at least 4 `samples`; with `surrogate`, at least 300.
     coefficient_of_variation : float, default 0.1
@@ -119,7 +119,8 @@ def size(
     maximise : str, optional
         Design variable that is to be large instead.
     samples : int, default 500
-        Number of runs per level of each estimate of a probability, at least 200.
+        Number of runs per level of each estimate of a probability, at least 200, and 25 per
+        parameter that scatters.
     runs : int, default 6000
         Largest number of runs of an estimate, at least 4 `samples`.
     coefficient_of_variation : float, default 0.1

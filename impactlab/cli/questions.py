@@ -76,8 +76,8 @@ def size(
 
     Design variables have the distribution uniform in the study, which states their ranges; the
     other parameters scatter. Prints the values for which the response exceeds its limit with at
-    most the probability wanted, confirmed by runs. Writes sizing.nc and sizing.html, its report, to
-    results/NAME; runs are kept there, and are not solved again.
+    most the probability wanted, confirmed by runs, and the numerical error there. Writes sizing.nc
+    and sizing.html, its report, to results/NAME; runs are kept there, and are not solved again.
     """
     stop_solving()
     from impactlab.report.console import print_estimate

@@ -18,12 +18,14 @@ from impactlab.methods.record import Indices
 from impactlab.methods.sampling import DRAWN_TOGETHER, MOST_RUNS, DrawnTogether
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown
-from impactlab.validation.fields import Number, Whole, at_key, names
+from impactlab.validation.fields import FileSection, Number, Whole, at_key, names
 
 Places = NDArray[np.uint64]
 Correlations = Sequence[tuple[str, str, float]]
 """Two parameters and Spearman's rank correlation of them; pairs that are not listed have 0."""
 _LEAST = 1e-8  # smallest eigenvalue of a matrix that counts as positive definite
+FEWEST_PLACED = 300
+"""Least number that runs placed by a Gaussian process may be limited to."""
 FEWEST_OF_WORD = 20
 """Runs per word: bootstrap resamples then practically never hold fewer than two."""
 _ARGUMENTS = """Parameters
@@ -36,13 +38,31 @@ _ARGUMENTS = """Parameters
         Number of runs, at least {fewest}.
     correlations : sequence of (str, str, float), optional
         Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
-        pairs are independent."""
+        pairs are independent.
+    until : mapping, optional
+        `{{"coefficient_of_variation": 0.1, "runs": 1000}}` solves up to so many runs more, which a
+        Gaussian process places, for the probability that the response exceeds its limit."""
 _EXAMPLE = """Examples
     --------
     >>> speed, depth = il.Uniform(1, 5), il.Uniform("26 mm", "29 mm")
     >>> sample = il.{method}(samples=128, parameters={{"velocity": speed, "beam_depth": depth}})"""
 
 _Triple = tuple[StrictStr, StrictStr, Annotated[Number, Field(gt=-1, lt=1)]]
+
+
+class UntilProbability(FileSection):
+    """The key `until`: more runs are placed until a probability is known well enough.
+
+    coefficient_of_variation: of the probability that the response exceeds its limit. runs: largest
+    number beside the sample's own.
+    """
+
+    coefficient_of_variation: Annotated[Number, Field(ge=0.01, le=0.5)]
+    runs: Annotated[Whole, Field(ge=FEWEST_PLACED, le=MOST_RUNS)]
+
+
+def _read_until(data: Any, info: ValidationInfo) -> UntilProbability:
+    return UntilProbability.model_validate(data, context=info.context)
 
 
 def _read_triples(data: Any) -> Correlations:
@@ -64,6 +84,7 @@ class Hypercube(DrawnTogether):
     even = True
     samples: Annotated[Whole, Field(le=MOST_RUNS)]
     correlations: Annotated[Correlations, PlainValidator(_read_triples)] = ()
+    until: Annotated[Any, PlainValidator(_read_until)] = None
 
     def __init_subclass__(cls) -> None:
         """Fill in what the docstrings of the methods share."""
@@ -76,6 +97,11 @@ class Hypercube(DrawnTogether):
     def runs(self) -> int:
         """Number of runs: that of the samples."""
         return self.samples
+
+    @property
+    def runs_at_most(self) -> int:
+        """The most runs that are solved, with those placed for a probability."""
+        return self.samples + (self.until.runs if self.until else 0)
 
     @model_validator(mode="after")
     def _check_fewest(self) -> Self:
@@ -285,6 +311,8 @@ class Latin(Hypercube):
     correlations : sequence of (str, str, float), optional
         Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
         pairs are independent.
+    until : mapping, optional
+        As of `Pawn`: runs placed for the probability that the response exceeds its limit.
     indices : sequence of str or "all"
         "delta", "hsic", "pawn", "rbd_fast", "regression", "shapley", "target_hsic"; the first one
         ranks the parameters; "all" stands for those of any number of parameters and without limits.

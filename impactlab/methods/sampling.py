@@ -80,6 +80,11 @@ class Sampling(Stated):
         """Number of runs of the study."""
 
     @property
+    def runs_at_most(self) -> int:
+        """The most runs that are solved, where `until` decides."""
+        return self.runs
+
+    @property
     def varied(self) -> Mapping[str, Any]:
         """Entries of the parameters that differ between runs: no sampler sees the others."""
         return {

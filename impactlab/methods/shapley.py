@@ -161,6 +161,8 @@ class Shapley(Hypercube):
     correlations : sequence of (str, str, float), optional
         Pairs of parameters with their rank correlation, `[("beam_depth", "velocity", 0.5)]`; other
         pairs are independent.
+    until : mapping, optional
+        As of `Pawn`: runs placed for the probability that the response exceeds its limit.
 
     References
     ----------

@@ -231,6 +231,11 @@ class Sobol(Grouped):
         """Saltelli's number of runs."""
         return self.base_samples * ((2 if self.pairs else 1) * self.group_count + 2)
 
+    @property
+    def runs_at_most(self) -> int:
+        """The most runs that are solved, where the sample grows."""
+        return max(self.runs, self.until.runs) if self.until else self.runs
+
     @model_validator(mode="after")
     def _check_until(self) -> Self:
         if self.until and self.base_samples < _FEWEST_TO_GROW:

@@ -148,10 +148,15 @@ def answers_beside(runs: xr.Dataset, folder: Path) -> Iterator[tuple[str, str, s
         (MULTIFIDELITY, "Two models"),
     ):
         path = folder / f"{name}.nc"
-        if not path.is_file() or not path.with_suffix(".html").is_file():
+        if not path.is_file():
             continue
         with suppress(ValueError, OSError):  # a damaged file has no answer
-            attrs = read_netcdf(path, name).attrs
+            result = read_netcdf(path, name)
+            if not path.with_suffix(".html").is_file():
+                if name != RARE_EVENT:
+                    continue
+                report_rare_event(result, folder)  # of runs that `until` has placed
+            attrs = result.attrs
             headline, *lines = (line.removesuffix(".") for line in attrs["answer"].splitlines())
             cautions = [line for line in lines if line.startswith("Caution: ")]
             finding = ". ".join([headline, *cautions])

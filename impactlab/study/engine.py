@@ -5,13 +5,13 @@ from __future__ import annotations
 import logging
 import shutil
 import signal
-from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, ExitStack, contextmanager
+from dataclasses import dataclass, field
+from functools import partial, wraps
 from multiprocessing import resource_tracker
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Concatenate, Literal, ParamSpec, TypeVar
 
 import dask
 from distributed import Client, LocalCluster, Security
@@ -25,6 +25,8 @@ from impactlab.validation.fields import FileSection, validated
 if TYPE_CHECKING:
     from dask_jobqueue.slurm import SLURMCluster
 
+Subject, Answer = TypeVar("Subject"), TypeVar("Answer")
+Arguments = ParamSpec("Arguments")
 _LOOPBACK = "127.0.0.1:0"
 _PATIENCE = 10.0  # seconds that a scheduler has to answer
 _SUBMIT_AGAIN = 60.0  # seconds between checks whether Slurm jobs have to be submitted again
@@ -59,6 +61,12 @@ class Engine:
     """A client that somebody else has made, and closes."""
 
     @contextmanager
+    def kept_open(self) -> Iterator[Engine]:
+        """Give this engine with one client, open from its first use to the end of the context."""
+        with ExitStack() as stack:
+            yield _OpenEngine(**vars(self), stack=stack)
+
+    @contextmanager
     def client(self) -> Iterator[Client]:
         """Give a dask client as a context. Raises OSError when no scheduler answers.
 
@@ -88,6 +96,39 @@ class Engine:
                 clients = _here(self.workers, processes=self.kind == "processes")
             with clients as client:
                 yield client
+
+
+@dataclass(frozen=True)
+class _OpenEngine(Engine):
+    """An engine whose client stays open until the stack is closed."""
+
+    stack: ExitStack = field(default_factory=ExitStack)
+    clients: list[Client] = field(default_factory=list)
+
+    @contextmanager
+    def kept_open(self) -> Iterator[Engine]:
+        yield self
+
+    @contextmanager
+    def client(self) -> Iterator[Client]:
+        if not self.clients:
+            self.clients.append(self.stack.enter_context(super().client()))
+        yield self.clients[0]
+
+
+def with_one_client(
+    function: Callable[Concatenate[Subject, Path, Engine, Arguments], Answer],
+) -> Callable[Concatenate[Subject, Path, Engine, Arguments], Answer]:
+    """Return the function with one client for all designs that it solves: a client takes 0.1 s."""
+
+    @wraps(function)
+    def with_client(
+        subject: Subject, path: Path, engine: Engine, *args: Arguments.args, **kw: Arguments.kwargs
+    ) -> Answer:
+        with engine.kept_open() as kept:
+            return function(subject, path, kept, *args, **kw)
+
+    return with_client
 
 
 def _no_late_timeout(record: logging.LogRecord) -> bool:

@@ -11,7 +11,6 @@ import numpy as np
 from distributed.system import MEMORY_LIMIT
 
 from impactlab.methods.sampling import RandomSample
-from impactlab.methods.sobol import Sobol
 from impactlab.model.case_table import case_table
 from impactlab.model.cost import A_SECOND, ANY_RUN, memory, work
 from impactlab.model.discretisation import Discretisation
@@ -146,8 +145,7 @@ def estimate(study: AnyStudy, folder: Path, workers: int, runs: int = 0) -> Esti
     file, doubted = str(study.path), []
     if runs and isinstance(study, ImpactStudy):
         study = replace(study, store=Store())
-    until = study.sampling.until if isinstance(study.sampling, Sobol) else None
-    runs = runs or max(study.sampling.runs, until.runs if until else 0)
+    runs = runs or study.sampling.runs_at_most
     parameters = len(study.sampling.varied)
     if isinstance(study, FunctionStudy):
         sampled, largest, largest_run = np.full(1, _FUNCTION), _FUNCTION, {}

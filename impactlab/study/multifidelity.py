@@ -32,7 +32,7 @@ from impactlab.model.quantities import engineering, time
 from impactlab.provenance import provenance
 from impactlab.study import MULTIFIDELITY
 from impactlab.study.design import design
-from impactlab.study.engine import Engine
+from impactlab.study.engine import Engine, with_one_client
 from impactlab.study.execute import execute
 from impactlab.study.multifidelity_indices import (
     check_independent,
@@ -73,6 +73,7 @@ class FidelityVerdict(Verdict):
     NO_STATISTICS = False, "too few pairs have answers, or these do not vary"
 
 
+@with_one_client
 def multifidelity(
     study: AnyStudy,
     folder: Path,

@@ -21,7 +21,6 @@ from dask.delayed import delayed
 
 from impactlab.files import block_rows
 from impactlab.methods.grid import Grid
-from impactlab.methods.sobol import Sobol
 from impactlab.study import PARTS
 from impactlab.study.design import design
 from impactlab.study.inventory import checked_cases
@@ -88,7 +87,7 @@ def merge(study: AnyStudy, path: Path, place: str = "", *, replace: bool = False
 
 
 def _check_parts(study: AnyStudy) -> None:
-    if isinstance(study.sampling, Sobol) and study.sampling.until:
+    if getattr(study.sampling, "until", None):
         reason = "lets the sample grow by all of its runs, so it has no parts: leave it out"
         raise StudyError(Problem(str(study.path), "sampling.until", reason))
 

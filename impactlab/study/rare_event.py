@@ -13,27 +13,31 @@ from impactlab.analysis.rare_event import Estimate, RareEventVerdict
 from impactlab.analysis.rare_event import estimate as estimated
 from impactlab.files import write_netcdf
 from impactlab.methods.distributions import Choice
-from impactlab.methods.hypercube import Correlations, Hypercube, correlation_matrix
+from impactlab.methods.hypercube import FEWEST_PLACED, Correlations, Hypercube, correlation_matrix
 from impactlab.methods.runs import usable
 from impactlab.methods.sampling import RandomSample
 from impactlab.model.checks import integer
 from impactlab.model.quantities import engineering
 from impactlab.provenance import provenance
 from impactlab.study import RARE_EVENT, steps
+from impactlab.study.adaptive.recommendation import AXES, grid_uncertainty
 from impactlab.study.design import design
-from impactlab.study.engine import Engine
+from impactlab.study.engine import Engine, with_one_client
 from impactlab.study.estimate import Estimate as Cost
 from impactlab.study.estimate import estimate as cost_of
 from impactlab.study.execute import execute
 from impactlab.study.ownership import check_unclaimed, study_file
-from impactlab.study.schema.declarations import AnyStudy
+from impactlab.study.schema.consistency import further_models
+from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
 from impactlab.types import Floats
 from impactlab.validation.errors import Problem, StudyError
 from impactlab.verdicts import flagged
 
-_FEWEST = 200  # runs per level
-FEWEST_RUNS = 300
-"""Least number that all runs may be limited to, where a Gaussian process places them."""
+SAMPLES, _FEWEST = 500, 200  # runs per level, by default and at least
+_DEFAULTS = {"samples": SAMPLES, "runs": 6000, "variation": 0.1}
+"""Of the options of `impactlab rare`."""
+_PER_PARAMETER = 25
+"""Least number of runs per level and parameter: with half of it probabilities are too small."""
 _MATTERS = 0.5  # standard deviations from which on the answer names a parameter
 
 
@@ -144,6 +148,21 @@ class LimitRuns(ScoreRuns):
         self.units = str(solved[self.response].attrs.get("units", "1"))
         return np.asarray(usable(solved, self.response).values[0])
 
+    def numerical_error(self, scores: Floats) -> float:
+        """Return the numerical uncertainty of the response at scores (parameter,), in its unit.
+
+        It is infinite where it is unknown, and NaN for a function or a varied discretisation, which
+        have none.
+        """
+        study = self.declared
+        if not isinstance(study, ImpactStudy) or {*AXES} & {*self.sampling.varied}:
+            return np.nan
+        if further_models(study):  # of a wing, whose mesh has other axes
+            return np.inf
+        cases = {name: column.tolist() for name, column in self.values(scores[np.newaxis]).items()}
+        errors = grid_uncertainty(study, cases, self.folder, self.engine)
+        return float(errors.sel(response=self.response).item())
+
     @property
     def event(self) -> str:
         """The event in words: the response exceeds its limit."""
@@ -181,7 +200,14 @@ def check_estimate(
     if not 0.01 <= target <= 0.5:
         message = "must be from 0.01 to 0.5"
         raise ValueError(f"{owner}: coefficient_of_variation = {target!r}: {message}")
-    return samples, integer(owner, "runs", runs, FEWEST_RUNS if surrogate else 4 * samples)
+    return samples, integer(owner, "runs", runs, FEWEST_PLACED if surrogate else 4 * samples)
+
+
+def check_per_parameter(owner: str, samples: int, parameters: int) -> None:
+    """Raise ValueError for too few runs per level to move in so many parameters."""
+    if samples < (fewest := _PER_PARAMETER * parameters):
+        message = f"must be at least {fewest}, which is {_PER_PARAMETER} per parameter that varies"
+        raise ValueError(f"{owner}: samples = {samples}: {message}")
 
 
 def cost(study: AnyStudy, folder: Path, workers: int, runs: int) -> Cost:
@@ -190,6 +216,7 @@ def cost(study: AnyStudy, folder: Path, workers: int, runs: int) -> Cost:
     return cost_of(steps.resolved(study, folder) or study, folder, workers, runs)
 
 
+@with_one_client
 def rare_event(
     study: AnyStudy,
     folder: Path,
@@ -219,6 +246,7 @@ def rare_event(
             raise ValueError(f"rare_event: surrogate: {message}, and {event[1]} vary: leave it out")
         result = learned_estimate(*event, **settings)
     else:
+        check_per_parameter("rare_event", samples, event[1])
         result = estimated(*event, samples=samples, **settings)
     dataset = _dataset(result, solver).assign_attrs(
         study.attributes() | provenance(),
@@ -226,7 +254,14 @@ def rare_event(
         confidence=study.analysis.confidence,
         target=target,
         words=solver.sampling.words,
-        arguments=" --surrogate" if surrogate else "",
+        arguments=" --surrogate" * surrogate
+        + "".join(
+            f" --{name} {value:g}"
+            for (name, default), value in zip(
+                _DEFAULTS.items(), (samples, runs, target), strict=True
+            )
+            if value != default
+        ),
         answer=_answer(result, solver),
     )
     write_netcdf(dataset, folder / f"{RARE_EVENT}.nc", "rare_event")
@@ -320,4 +355,6 @@ def _answer(result: Estimate, solver: LimitRuns) -> str:
         elif abs(score) >= _MATTERS:
             value = solver.stated(name, values[name][0])
             places.append(f"{solver.long_name(name)} {score:+.1f} sd ({value})".replace("-", "−"))
+    if not places:  # the middle of all scores lies beyond
+        return text
     return f"{text}\nThe likeliest way to exceed it: {', '.join(places)}."

@@ -1,6 +1,7 @@
 """The best design of a study whose probability of exceeding a limit is small enough."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,9 +25,14 @@ from impactlab.model.parameters import with_values
 from impactlab.model.quantities import engineering
 from impactlab.provenance import provenance
 from impactlab.study import SIZING
-from impactlab.study.engine import Engine
+from impactlab.study.engine import Engine, with_one_client
 from impactlab.study.ownership import study_file
-from impactlab.study.rare_event import LimitRuns, check_estimate, limited_sample
+from impactlab.study.rare_event import (
+    LimitRuns,
+    check_estimate,
+    check_per_parameter,
+    limited_sample,
+)
 from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown
@@ -45,6 +51,7 @@ def most_runs(study: AnyStudy, runs: int) -> int:
     return pilot_runs(len(limited_sample(study).varied)) + MOST_ESTIMATES * runs
 
 
+@with_one_client
 def sizing(
     study: AnyStudy,
     folder: Path,
@@ -74,6 +81,7 @@ def sizing(
     varied = [*solver.sampling.varied]
     columns = [varied.index(variable) for variable in variables]
     others = [index for index in range(len(varied)) if index not in columns]
+    check_per_parameter("size", samples, len(others))
 
     def solve(designs: Floats, scores: Floats) -> Floats:
         points = np.empty((len(designs), len(varied)))
@@ -94,9 +102,10 @@ def sizing(
         target=target,
         confidence=study.analysis.confidence,
     )
+    error, result = _numerical(result, solver, columns, others, probability)
     sign = -1.0 if maximise else 1.0
     options = f" --maximise {maximise}" if maximise else f" --minimise {minimise}"
-    dataset = _dataset(result, solver, variables, sign, name).assign_attrs(
+    dataset = _dataset(result, solver, variables, sign, name, error).assign_attrs(
         study.attributes() | provenance(),
         study_file=study_file(study, folder),
         arguments=f" {' '.join(variables)} --probability {probability:g}{options}",
@@ -104,10 +113,38 @@ def sizing(
         target=target,
         largest_probability=probability,
         objective=name,
-        answer=_answer(result, solver, variables, sign, name, probability),
+        answer=_answer(result, solver, variables, sign, name, probability, error),
     )
     write_netcdf(dataset, folder / f"{SIZING}.nc", "sizing")
     return dataset
+
+
+def _numerical(
+    result: Sizing,
+    solver: LimitRuns,
+    columns: Sequence[int],
+    others: Sequence[int],
+    probability: float,
+) -> tuple[tuple[float, float, float], Sizing]:
+    """Return the numerical error, the probabilities with it, and the design as it is judged then.
+
+    The error is that of the response at the design and the likeliest way beyond the limit there, in
+    its unit. NaN where there is no such point; infinite, without probabilities, where it is
+    unknown.
+    """
+    estimate = result.probability
+    if not result.verdict.sound or estimate.design_point is None:
+        return (np.nan, np.nan, np.nan), result
+    point = np.empty(len(columns) + len(others))
+    point[[*columns]] = scipy.special.ndtri(result.designs[0])
+    point[[*others]] = estimate.design_point
+    error = solver.numerical_error(point)
+    if not np.isfinite(error):
+        return (error, np.nan, np.nan), result
+    low, high = (estimate.beyond(solver.limit + side) for side in (error, -error))
+    if high > probability:
+        result = replace(result, verdict=SizingVerdict.NUMERICAL)
+    return (error, low, high), result
 
 
 def _check_variables(solver: LimitRuns, variables: Sequence[str]) -> None:
@@ -177,6 +214,7 @@ def _dataset(
     variables: Sequence[str],
     sign: float,
     name: str,
+    numerical: tuple[float, float, float],
 ) -> xr.Dataset:
     """Return the numbers of a design with names and units."""
     estimates, front = result.estimates, result.front
@@ -204,6 +242,16 @@ def _dataset(
         attrs = probability | ({"long_name": long_name[key]} if key in long_name else {})
         data[f"tried_{key}"] = (("estimate",), tried, attrs)
     data["front_objective"] = (("front", "bound"), sign * front[1:].T, best)
+    data["numerical_error"] = (
+        (),
+        numerical[0],
+        {"units": solver.units, "long_name": f"numerical error of {solver.response} there"},
+    )
+    data["numerical_probability"] = (
+        ("side",),
+        [*numerical[1:]],
+        {"units": "1", "long_name": "probability if the response is smaller or larger by it"},
+    )
     data["runs"] = ((), result.runs, {"units": "1", "long_name": "runs solved, in all"})
     bounds = {"long_name": "estimate, and ends of its interval"}
     coords = {
@@ -228,6 +276,7 @@ def _answer(
     sign: float,
     name: str,
     largest: float,
+    numerical: tuple[float, float, float],
 ) -> str:
     """Return the findings in sentences: the design first."""
     estimate, confidence = result.probability, 100 * solver.declared.analysis.confidence
@@ -258,6 +307,14 @@ def _answer(
         f"{places}.",
         f"Probability there: {known}, by {estimate.runs:,} of {result.runs:,} runs.",
     ]
+    error, least, most = numerical
+    if np.isinf(error):
+        lines.append("Numerical error: unknown at this design: check the convergence there.")
+    elif not np.isnan(error):
+        lines.append(
+            f"Numerical error: up to {engineering(error, solver.units)} at the likeliest way "
+            f"beyond the limit, by which the probability is {least:.2g} to {most:.2g}."
+        )
     ends = sign * result.objectives[1:]
     if np.isfinite(ends).all():
         low, high = (engineering(float(end), units) for end in np.sort(ends))

@@ -26,8 +26,9 @@ from impactlab.files import (
     write_csv,
     write_netcdf,
 )
+from impactlab.methods.hypercube import Hypercube
 from impactlab.provenance import provenance
-from impactlab.study import CALIBRATION, PARTS, REFINEMENT, RESOLUTION, SHARDS, TRIALS
+from impactlab.study import CALIBRATION, PARTS, RARE_EVENT, REFINEMENT, RESOLUTION, SHARDS, TRIALS
 from impactlab.study.ownership import check_unclaimed, same_runs, study_file, write_runs
 from impactlab.study.schema.declarations import (
     AnyStudy,
@@ -119,9 +120,10 @@ def run(
 ) -> None:
     """Price a study, resolve its discretisation, draw and solve its runs; write them to `path`.
 
-    The rows of a table are its runs. Those of a slow model that the study asks for, and what they
-    tell, are kept beside them (multifidelity.nc). runs: its design, where it is drawn already.
-    force: whatever it costs. replace: whatever study has results there. tell: of `resolved`.
+    The rows of a table are its runs. Runs placed for a probability (`until` of a Latin hypercube)
+    leave rare_event.nc beside `path`, those of a slow model multifidelity.nc. runs: its design,
+    where it is drawn already. force: whatever it costs. replace: whatever study has results there.
+    tell: of `resolved`.
 
     Raises StudyError where a limit is exceeded, for wrong measurements, and as `resolved` and
     `solve`; ValueError as `check_unclaimed`.
@@ -138,13 +140,22 @@ def run(
         write_runs(runs_of_file(study).assign_attrs(provenance(), study_file=source), path)
         return
     declared = priced(study, path.parent, engine.workers, force, tell)
-    if runs is None:
-        runs = design(declared or resolved(study, path.parent, engine, tell) or study)
-    solve(runs.assign_attrs(study_file=source), path, engine)
-    if study.multifidelity:
-        from impactlab.study.multifidelity import multifidelity
+    with engine.kept_open() as kept:  # one client for pilots, runs and what is asked of them
+        if runs is None:
+            runs = design(declared or resolved(study, path.parent, kept, tell) or study)
+        solve(runs.assign_attrs(study_file=source), path, kept)
+        if isinstance(study.sampling, Hypercube) and (until := study.sampling.until):
+            from impactlab.study.rare_event import SAMPLES, rare_event
 
-        multifidelity(study, path.parent, engine)
+            settings = SAMPLES, until.runs, until.coefficient_of_variation
+            result = rare_event(study, path.parent, kept, *settings, surrogate=True)
+            path.with_name(f"{RARE_EVENT}.html").unlink(missing_ok=True)  # of the result before
+            for line in result.attrs["answer"].splitlines():
+                log.info("%s", line)
+        if study.multifidelity:
+            from impactlab.study.multifidelity import multifidelity
+
+            multifidelity(study, path.parent, kept)
 
 
 def priced(

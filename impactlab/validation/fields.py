@@ -202,7 +202,7 @@ _NOT_HERE = {
         "(groups), or fix all but one ({distribution: fixed, value: ...})"
     ),
     "groups?": "groups belong to the section sampling with method: sobol or morris",
-    "until": "belongs to the section sampling with method: sobol",
+    "until": "belongs to the section sampling with method: sobol or a Latin hypercube",
 }
 """Keys that people look for, as patterns, and messages for where there is no such key."""
 

@@ -111,6 +111,27 @@ def recommend(
     return evidence.assign_coords(labels).assign_attrs(attrs | provenance())
 
 
+def grid_uncertainty(
+    study: ImpactStudy, cases: Mapping[str, Sequence[Value]], folder: Path, engine: Engine
+) -> xr.DataArray:
+    """Return the numerical uncertainty of a study's grid, (response, case), infinite where unknown.
+
+    cases: values of its varied parameters. folder: for the shards of the pilot runs. Raises OSError
+    as `recommend`.
+    """
+    impact, grid = with_values(study.impact, study.discretisation, study.sampling.fixed)
+    study = replace(study, impact=impact, discretisation=grid)
+    levels = _refinement_levels(grid, auto=False)
+    pilots = partial(solve_along, study, cases, folder, engine)
+    parts = (
+        _axis(pilots, axis, levels, grid)[f"{axis}_uncertainty"].sel(
+            {axis: getattr(grid, axis)}, drop=True
+        )
+        for axis in AXES
+    )
+    return reduce(add, parts)
+
+
 def recommended_grid(evidence: xr.Dataset, base: Discretisation) -> Discretisation | None:
     """Return the base with nodes, points and courant of the recommended candidate, or None."""
     best = int(evidence["recommended"])

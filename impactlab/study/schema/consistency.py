@@ -11,6 +11,7 @@ from impactlab.methods import NO_DISTRIBUTION
 from impactlab.methods.distributions import Choice, Integers
 from impactlab.methods.entries import Distribution
 from impactlab.methods.grid import Grid
+from impactlab.methods.hypercube import Hypercube
 from impactlab.methods.sampling import RandomSample, Sampling
 from impactlab.methods.sobol import Sobol
 from impactlab.model import impact
@@ -155,6 +156,15 @@ def limit_reasons(file: StudyFile | FunctionStudy) -> Reasons:
         yield "limits", f"give no probabilities with method {method}: {reason} (use {methods})"
     elif file.limits and "distribution" not in file.analyses:
         yield "limits", "need the analysis distribution: list it in analyses"
+    if isinstance(file.sampling, Hypercube) and file.sampling.until:
+        from impactlab.analysis.limit_state import MOST_PARAMETERS  # late: others do without
+
+        if len(file.limits) != 1:
+            reason = "places runs about the limit of one response: state that one in `limits`"
+            yield "sampling.until", reason
+        if len(file.sampling.varied) > MOST_PARAMETERS:
+            reason = f"is for {MOST_PARAMETERS} varied parameters at most: leave it out"
+            yield "sampling.until", reason
 
 
 def _automatic_discretisation(file: StudyFile) -> Reasons:

@@ -278,8 +278,9 @@ class StudyBase(Declared):
     @property
     def size(self) -> str:
         """Describe the amount of work."""
-        until = self.sampling.until if isinstance(self.sampling, Sobol) else None
-        return f"{self.sampling.runs:,} runs" + (f", at most {until.runs:,}" if until else "")
+        runs, most = self.sampling.runs, self.sampling.runs_at_most
+        until = getattr(self.sampling, "until", None)
+        return f"{runs:,} runs" + (f", at most {most:,}" if until else "")
 
 
 @dataclass(frozen=True)

@@ -153,9 +153,9 @@ def describe(path: Path) -> dict[str, Any]:
 
     traits: "checks" (a verification), "table" (runs made elsewhere, in the file `table`), "auto"
     (its discretisation is to be found), "sample" (its impacts are drawn), "sobol" (by Sobol's
-    sequence), "growing" (until its intervals are narrow), "multifidelity" (with a slow model), and
-    those of the wings' models that some runs have. measurements: its files of them, if any. Of a
-    file that is wrong: name, no traits, and `error`.
+    sequence), "growing" (by `until`), "multifidelity" (with a slow model), and those of the wings'
+    models that some runs have. measurements: its files of them, if any. Of a file that is wrong:
+    name, no traits, and `error`.
     """
     try:
         study = read_any(path)
@@ -164,7 +164,7 @@ def describe(path: Path) -> dict[str, Any]:
     sampling, impacts = getattr(study, "sampling", None), isinstance(study, ImpactStudy)
     traits = {
         "checks": isinstance(study, Verification),
-        "growing": isinstance(sampling, Sobol) and bool(sampling.until),
+        "growing": bool(getattr(sampling, "until", None)),
         "auto": isinstance(study, ImpactStudy) and study.auto is not None,
         "sample": impacts and isinstance(sampling, RandomSample),
         "sobol": impacts and isinstance(sampling, Sobol),

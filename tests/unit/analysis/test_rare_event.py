@@ -77,3 +77,11 @@ def test_a_limit_out_of_reach_has_no_probability(response):
     assert result.verdict is RareEventVerdict.NOT_REACHED
     assert np.isnan(result.probability)
     assert result.runs <= 6000
+
+
+def test_the_last_sample_tells_limits_close_by():
+    limit = norm.isf(1e-3)
+    result = estimate(lambda u: u[:, 0], 2, limit, seed=1, **SETTINGS)
+    for other in (limit - 0.1, limit, limit + 0.1):
+        assert result.beyond(other) == pytest.approx(norm.sf(other), rel=0.3)
+    assert result.beyond(limit) == result.probability

@@ -4,6 +4,7 @@ import sys
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.stats import norm
 
 import impactlab as il
@@ -35,6 +36,22 @@ def test_runs_are_kept_and_give_the_same_bits_for_any_number_of_workers(tmp_path
     page = (tmp_path / "one" / "load" / "rare_event.html").read_text("utf-8")
     assert first.answer.splitlines()[0].removesuffix(".") in page.replace("\xa0", " ")
     assert page.count("<figure") == 1
+
+
+def test_a_study_places_runs_until_its_probability_is_known(tmp_path):
+    until = {"coefficient_of_variation": 0.1, "runs": 700}
+    parameters = {"load": il.Normal(5, 1), "strength": il.Normal(11, 1)}
+    plain = study(tmp_path / "plain")
+    sampling = il.Pawn(samples=128, parameters=parameters, until=until)
+    grown = study(tmp_path / "grown", sampling=sampling)
+    assert grown.run(workers=1).sizes["run"] == 128
+    page = grown.report().read_text("utf-8").replace("\xa0", " ")
+    result = il.rare_event(plain, surrogate=True, runs=700, workers=2)
+    assert result.answer.splitlines()[0].removesuffix(".") in page
+    stored = xr.open_dataset(grown.folder / "rare_event.nc")
+    assert stored.probability.item() == result.probability.item()
+    assert stored.attrs["arguments"] == " --surrogate --runs 700"
+    assert result.low < norm.sf(6 / np.sqrt(2)) < result.high
 
 
 @pytest.mark.parametrize("surrogate", [False, True])
@@ -138,3 +155,12 @@ def test_a_process_of_many_parameters_is_refused(tmp_path):
     many = study(tmp_path, function, sampling=sampling)
     with pytest.raises(ValueError, match="at most 16 parameters, and 17 vary"):
         il.rare_event(many, surrogate=True, workers=1)
+
+
+def test_many_parameters_take_more_runs_per_level(tmp_path):
+    names = [f"u{number}" for number in range(30)]
+    total = eval(f"lambda {', '.join(names)}: {' + '.join(names)}")
+    sampling = il.Pawn(samples=128, parameters={name: il.Normal(0, 1) for name in names})
+    declared = study(tmp_path, function=total, sampling=sampling, limits={"value": 20})
+    with pytest.raises(ValueError, match="samples = 500: must be at least 750, which is 25 per"):
+        il.rare_event(declared, workers=1)

@@ -6,6 +6,8 @@ from scipy.optimize import brentq
 from scipy.stats import norm
 
 import impactlab as il
+from impactlab.study.engine import Engine
+from impactlab.study.rare_event import LimitRuns
 from impactlab.study.sizing import sizing
 
 
@@ -164,3 +166,51 @@ def test_studies_without_a_sample_are_refused(tmp_path):
     )
     with pytest.raises(il.StudyError, match="use any method but grid"):
         sizing(declared.declared, declared.folder, None, ["area"], 0.01)
+
+
+@pytest.mark.parametrize("factor", [0.2, 5.0])
+def test_a_numerical_error_is_stated_and_may_take_the_design(tmp_path, monkeypatch, factor):
+    """An error of the load's scatter moves the probability as that of a strength would."""
+    rod = study(tmp_path)
+    settings = {"probability": 1e-3, "minimise": "area", "workers": 1}
+    plain = il.size(rod, ["area"], **settings)
+    assert "Numerical error" not in plain.answer
+    area, spare = plain.area.item(0), 1e-3 / plain.probability.item(0)
+    deviation = np.hypot(1 / area, 0.5)
+    error = factor * deviation * (norm.isf(plain.probability.item(0)) - norm.isf(1e-3))
+    monkeypatch.setattr(LimitRuns, "numerical_error", lambda self, scores: error)
+    result = il.size(rod, ["area"], **settings)
+    index = (6 - 5 / area) / deviation
+    exact = norm.sf([index + error / deviation, index - error / deviation])
+    np.testing.assert_allclose(result.numerical_probability, exact, rtol=0.25)
+    verdict = result.verdict.attrs["flag_meanings"].split()[result.verdict.item()]
+    assert spare > 1
+    assert verdict == ("usable" if factor < 1 else "numerical")
+    assert ("take a finer discretisation" in result.answer) == (factor > 1)
+    assert "Numerical error: up to " in result.answer
+
+
+def test_the_numerical_error_holds_what_a_finer_grid_changes(tmp_path):
+    def declared(nodes):
+        sampling = il.Pawn(
+            samples=128,
+            parameters={
+                "velocity": il.Uniform("4 m/s", "6 m/s"),
+                "beam_depth": il.Uniform("26 mm", "30 mm"),
+            },
+        )
+        return il.Study(
+            title=f"{nodes} nodes", impact=il.paper_impact("5 m/s"), duration="0.5 ms",
+            discretisation=il.Discretisation(nodes=nodes, points=5, scheme="modal"),
+            responses=["peak_force"], limits={"peak_force": "30 kN"},
+            sampling=sampling, results=tmp_path,
+        )  # fmt: skip
+
+    def solver(nodes):
+        rare = declared(nodes)
+        return LimitRuns.of(rare.declared, rare.folder, Engine("threads", 1), "sizing")
+
+    scores = np.array([0.5, -1.0])
+    coarse, fine = (solver(n).outputs(scores[None])[0] for n in (17, 201))
+    error = solver(17).numerical_error(scores)
+    assert abs(coarse - fine) < error < 10 * abs(coarse - fine)

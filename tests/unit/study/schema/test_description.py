@@ -47,6 +47,13 @@ EXPECTED = {
         .replace("  until: {interval: 0.1, runs: 1000}\n", ""),
         ["auto", "sample"],
     ),
+    "placed": (
+        SAMPLE.replace("sobol", "pawn")
+        .replace("base_samples: 64", "samples: 100")
+        .replace("interval: 0.1", "coefficient_of_variation: 0.1")
+        + "limits: {peak_force: 9 kN}\n",
+        ["growing", "auto", "sample"],
+    ),
     "fem3d": (
         GRID.replace("{base: paper}", "{base: paper, beam_model: solid}").replace(
             "points: 3", "points: 3, element_size: 2 mm"

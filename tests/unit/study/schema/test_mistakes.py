@@ -35,7 +35,7 @@ WRONG_IN_GRID = [
     ("sampling", [], "expected a mapping with the key method"),
     ("sampling.method", "gird", "unknown method; did you mean 'grid'?"),
     ("sampling.seed", 1, "unknown key; choose from method, parameters"),
-    ("sampling.until", {}, "belongs to the section sampling with method: sobol"),
+    ("sampling.until", {}, "belongs to the section sampling with method: sobol or"),
     ("groups", {}, "groups belong to the section sampling with method: sobol or morris"),
     ("sampling.parameters", {}, "too few"),
     ("sampling.parameters.beam_dept", [1], "did you mean 'beam_depth'?"),

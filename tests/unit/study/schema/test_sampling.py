@@ -183,6 +183,23 @@ def test_a_sample_may_grow(read, sampled, problems, refused):
     assert "sampling.until" in {key for key, _ in problems(text)}
 
 
+PLACED = {"coefficient_of_variation": "10 %", "runs": 400}
+
+
+def test_runs_may_be_placed_for_a_probability(read, sampled, problems, refused):
+    def text(until=PLACED, **settings):
+        limits = '"limits": {"peak_force": "9 kN"}'
+        return sampled("pawn", samples=100, until=until, **settings)[:-1] + f", {limits}" + "}"
+
+    study = read(text())
+    assert study.sampling.until.coefficient_of_variation == 0.1
+    assert study.size == "100 runs, at most 500"
+    refused(sampled("pawn", samples=100, until=PLACED), "sampling.until", "state that one in")
+    refused(text(PLACED | {"runs": 299}), "sampling.until.runs", "must be at least 300")
+    found = problems(text(UNTIL))
+    assert "sampling.until.coefficient_of_variation" in {key for key, _ in found}
+
+
 @pytest.mark.parametrize(("change", "key", "words"), WRONG_UNTIL)
 def test_a_mistake_in_until_is_one_problem_at_its_key(refused, sampled, change, key, words):
     text = sampled("sobol", base_samples=64, until=UNTIL | change)
