@@ -25,7 +25,8 @@ from impactlab.validation.fields import FileSection, validated
 if TYPE_CHECKING:
     from dask_jobqueue.slurm import SLURMCluster
 
-Subject, Answer = TypeVar("Subject"), TypeVar("Answer")
+Subject = TypeVar("Subject")
+Answer = TypeVar("Answer")
 Arguments = ParamSpec("Arguments")
 _LOOPBACK = "127.0.0.1:0"
 _PATIENCE = 10.0  # seconds that a scheduler has to answer
@@ -123,10 +124,15 @@ def with_one_client(
 
     @wraps(function)
     def with_client(
-        subject: Subject, path: Path, engine: Engine, *args: Arguments.args, **kw: Arguments.kwargs
+        subject: Subject,
+        path: Path,
+        engine: Engine,
+        /,
+        *args: Arguments.args,
+        **options: Arguments.kwargs,
     ) -> Answer:
         with engine.kept_open() as kept:
-            return function(subject, path, kept, *args, **kw)
+            return function(subject, path, kept, *args, **options)
 
     return with_client
 
