@@ -59,21 +59,18 @@ FAILURES: dict[str, tuple[int, str]] = {
     ),
     "no_shakedown": (
         outputs.NO_SHAKEDOWN,
-        "the last strike still makes the dent or the dissipation in the fibres grow, or its sphere "
-        "does not leave",
+        "the last strike's sphere does not leave, or dent or fibres' dissipation still grow",
     ),
     "not_steady": (
         outputs.NOT_STEADY,
-        "the last strike still makes the dent or the residual deflection grow, or its sphere "
-        "does not leave",
+        "the last strike's sphere does not leave, or dent or residual deflection still grow",
     ),
 }
 """Reasons for a missing response, by name: (bit in `status`, in words)."""
 MARKS: dict[str, tuple[int, str]] = {
     "outside_contact_law": (
         outputs.OUTSIDE_CONTACT_LAW,
-        "the largest indentation is beyond the range of the contact law (which `contact` states): "
-        "the responses are extrapolated",
+        "the largest indentation is beyond the contact law's range: responses are extrapolated",
     )
 }
 """Further flags of `status`, by name: bits that leave every response as it is."""
@@ -104,8 +101,8 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "hardening_outside_data": (
         outputs.HARDENING_OUTSIDE_DATA,
-        "the beam's hardening modulus is above 0.05 of its Young's modulus, where the data of the "
-        "contact law end, or kinematic hardening lets the contact yield in reverse",
+        "the beam's hardening modulus is above 0.05 of its Young's modulus, beyond the law's data, "
+        "or kinematic hardening lets the contact yield in reverse",
     ),
     "sphere_yield_outside_data": (
         outputs.SPHERE_YIELD_OUTSIDE_DATA,
@@ -130,8 +127,7 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "struck_near_end": (
         outputs.STRUCK_NEAR_END,
-        "the strike lies within a beam depth of an end, where the body under the contact is "
-        "no half-space and the section no beam",
+        "the strike lies within a beam depth of an end, where the body is no half-space nor beam",
     ),
     "wall_may_dent": (
         outputs.WALL_MAY_DENT,
@@ -140,14 +136,13 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "round_top": (
         outputs.ROUND_TOP,
-        "the beam is round where the sphere strikes, and the contact law is that of a flat top: "
-        "the contact is too stiff",
+        "the beam is round where the sphere strikes, the law's top flat: contacts are too stiff",
     ),
     "stretching_left_out": (
         outputs.STRETCHING_LEFT_OUT,
-        "both ends hold the axis, and the axial force of a beam that deflects so far, which this "
-        "model leaves out, takes more than 2 % off the largest deflection by an estimate that is "
-        "right within a factor of three: beam_model: von_karman has it, and rollers have none",
+        "both ends hold the axis, and stretching, which this model leaves out, takes more than 2 % "
+        "off the largest deflection by an estimate right within a factor of three: beam_model: "
+        "von_karman has it, and rollers have none",
     ),
     "no_shakedown": (
         outputs.NO_SHAKEDOWN,
@@ -164,8 +159,8 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "unstable_rest": (
         outputs.UNSTABLE_REST,
-        "plastic strains compress the beam at rest, and on this foundation it would buckle into an "
-        "antisymmetric shape: it is put to rest in a symmetric one, which is not stable",
+        "plastic strains compress the resting beam so much that on this foundation it would buckle "
+        "antisymmetrically: its symmetric shape at rest is not stable",
     ),
     "skin_may_give": (
         outputs.SKIN_MAY_GIVE,

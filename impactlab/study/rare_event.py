@@ -1,5 +1,6 @@
 """The probability of a rare event from runs of a study's solver, kept and found again on disk."""
 
+import logging
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,7 +14,13 @@ from impactlab.analysis.rare_event import Estimate, RareEventVerdict
 from impactlab.analysis.rare_event import estimate as estimated
 from impactlab.files import write_netcdf
 from impactlab.methods.distributions import Choice
-from impactlab.methods.hypercube import FEWEST_PLACED, Correlations, Hypercube, correlation_matrix
+from impactlab.methods.hypercube import (
+    FEWEST_PLACED,
+    Correlations,
+    Hypercube,
+    UntilProbability,
+    correlation_matrix,
+)
 from impactlab.methods.runs import usable
 from impactlab.methods.sampling import RandomSample
 from impactlab.model.checks import integer
@@ -32,6 +39,8 @@ from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
 from impactlab.types import Floats
 from impactlab.validation.errors import Problem, StudyError
 from impactlab.verdicts import flagged
+
+log = logging.getLogger(__name__)
 
 SAMPLES, _FEWEST = 500, 200  # runs per level, by default and at least
 _DEFAULTS = {"samples": SAMPLES, "runs": 6000, "variation": 0.1}
@@ -266,6 +275,15 @@ def rare_event(
     )
     write_netcdf(dataset, folder / f"{RARE_EVENT}.nc", "rare_event")
     return dataset
+
+
+def place_runs(study: AnyStudy, folder: Path, engine: Engine, until: UntilProbability) -> None:
+    """Place runs until the probability is known as well as the study asks; log the answer."""
+    settings = SAMPLES, until.runs, until.coefficient_of_variation
+    result = rare_event(study, folder, engine, *settings, surrogate=True)
+    (folder / f"{RARE_EVENT}.html").unlink(missing_ok=True)  # of the result before
+    for line in result.attrs["answer"].splitlines():
+        log.info("%s", line)
 
 
 def _dataset(result: Estimate, solver: LimitRuns) -> xr.Dataset:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace as changed
 from functools import partial
+from itertools import chain
 from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,7 +29,7 @@ from impactlab.files import (
 )
 from impactlab.methods.hypercube import Hypercube
 from impactlab.provenance import provenance
-from impactlab.study import CALIBRATION, PARTS, RARE_EVENT, REFINEMENT, RESOLUTION, SHARDS, TRIALS
+from impactlab.study import CALIBRATION, PARTS, REFINEMENT, RESOLUTION, SHARDS, TRIALS
 from impactlab.study.ownership import check_unclaimed, same_runs, study_file, write_runs
 from impactlab.study.schema.declarations import (
     AnyStudy,
@@ -99,8 +100,8 @@ def resolved(
             resolution = read_netcdf(file, "resolution")
         except ValueError as error:
             log.warning("%s; the pilot runs are solved again", error)
-    made_for = {"study_sha256": study.sha256, "kernels_sha256": SOURCES_HASH}
-    if resolution is None or not made_for.items() <= resolution.attrs.items():
+    stamps = {"study_sha256": study.sha256, "kernels_sha256": SOURCES_HASH}
+    if resolution is None or not stamps.items() <= resolution.attrs.items():
         if engine is None:
             return None
         resolution = recommend(study, file, engine)
@@ -120,10 +121,9 @@ def run(
 ) -> None:
     """Price a study, resolve its discretisation, draw and solve its runs; write them to `path`.
 
-    The rows of a table are its runs. Runs placed for a probability (`until` of a Latin hypercube)
-    leave rare_event.nc beside `path`, those of a slow model multifidelity.nc. runs: its design,
-    where it is drawn already. force: whatever it costs. replace: whatever study has results there.
-    tell: of `resolved`.
+    The rows of a table are its runs. Runs placed for a probability leave rare_event.nc beside
+    `path`, those of a slow model multifidelity.nc. runs: its design, where it is drawn already.
+    force: whatever it costs. replace: whatever study has results there. tell: of `resolved`.
 
     Raises StudyError where a limit is exceeded, for wrong measurements, and as `resolved` and
     `solve`; ValueError as `check_unclaimed`.
@@ -144,14 +144,10 @@ def run(
         if runs is None:
             runs = design(declared or resolved(study, path.parent, kept, tell) or study)
         solve(runs.assign_attrs(study_file=source), path, kept)
-        if isinstance(study.sampling, Hypercube) and (until := study.sampling.until):
-            from impactlab.study.rare_event import SAMPLES, rare_event
+        if isinstance(study.sampling, Hypercube) and study.sampling.until:
+            from impactlab.study.rare_event import place_runs
 
-            settings = SAMPLES, until.runs, until.coefficient_of_variation
-            result = rare_event(study, path.parent, kept, *settings, surrogate=True)
-            path.with_name(f"{RARE_EVENT}.html").unlink(missing_ok=True)  # of the result before
-            for line in result.attrs["answer"].splitlines():
-                log.info("%s", line)
+            place_runs(study, path.parent, kept, study.sampling.until)
         if study.multifidelity:
             from impactlab.study.multifidelity import multifidelity
 
@@ -185,8 +181,7 @@ def priced(
 def solve(samples: xr.Dataset, path: Path, engine: Engine) -> None:
     """Solve the runs of a design that have not been solved yet, and write all to `path` (runs.nc).
 
-    Finished batches are kept in shards/ beside it. A sample that grows is solved until its
-    intervals are narrow enough.
+    Finished batches stay in shards/ beside it; a growing sample ends with narrow intervals.
 
     Raises ValueError, OSError and BlockingIOError as execute.open_runs does.
     """
@@ -227,9 +222,8 @@ def status(study: AnyStudy, folder: Path) -> Status | None:
     if runs.exists():
         with opened(runs, "runs", indexed=False) as dataset:
             attrs, size = dataset.attrs, prod(run_shape(dataset)[1])
-        written = f"{runs}: {size:,} runs"
-        if not same_runs(study, attrs):
-            written += " of another study, or of an earlier text of this one"
+        others = "" if same_runs(study, attrs) else " of another study, or of its earlier text"
+        written = f"{runs}: {size:,} runs{others}"
         if attrs.get("study_sha256") == declared.sha256 and "until_reason" in attrs:
             last = attrs["base_samples"]  # at which it stopped growing
     for stage in stages(design(declared)):
@@ -304,8 +298,8 @@ def refine(runs: Path, path: Path, engine: Engine, base_samples: int | None = No
     from impactlab.study.adaptive.extension import refine_cases
     from impactlab.study.execute import execute
 
-    part = partial(execute, shards_folder=runs.with_name(REFINEMENT), engine=engine)
     with checked(runs, "runs") as solved:
+        part = partial(execute, shards_folder=runs.with_name(REFINEMENT), engine=engine)
         write_netcdf(refine_cases(solved, part, base_samples), path, "refinement", solved)
 
 
@@ -347,20 +341,17 @@ def analyse_runs(
     from impactlab.methods.runs import listed
     from impactlab.study.schema.measurement_files import read_measurements
 
-    files = {"resolution": resolution, "refinement": refinement}
-    evidence = {name: read_netcdf(file, name) for name, file in files.items() if file}
+    beside = {"resolution": resolution, "refinement": refinement}
+    evidence = {name: read_netcdf(file, name) for name, file in beside.items() if file}
     with checked(runs, "runs") as solved:
         if refinement:
             check_source(evidence["refinement"], refinement, solved, runs)
         sources = solved, *evidence.values()
         analysis = analyse(solved, **evidence)
         if "measurements" in solved.attrs:
-            measured = [
-                measurement
-                for file in listed(solved, "measurements")
-                for measurement in read_measurements(file, solved)
-            ]
-            analysis = analysis.merge(compared(solved, analysis, measured))
+            files = listed(solved, "measurements")
+            measured = chain.from_iterable(read_measurements(file, solved) for file in files)
+            analysis = analysis.merge(compared(solved, analysis, list(measured)))
         if "slow_model" in solved.attrs:
             from impactlab.study.multifidelity import slow_answer
 
@@ -382,7 +373,6 @@ def analyse_runs(
 
 def check(verification: Verification) -> xr.Dataset:
     """Make every check, also after one that ends in an error; return findings.nc."""
-    from impactlab.provenance import provenance
     from impactlab.solver.jit import SOURCES_HASH
     from impactlab.study.progress import items_done
     from impactlab.verification.catalogue import CATALOGUE
