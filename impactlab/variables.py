@@ -70,7 +70,7 @@ FAILURES: dict[str, tuple[int, str]] = {
 MARKS: dict[str, tuple[int, str]] = {
     "outside_contact_law": (
         outputs.OUTSIDE_CONTACT_LAW,
-        "the largest indentation is beyond the contact law's range: responses are extrapolated",
+        "the largest indentation is beyond the range of the contact law: it is extrapolated",
     )
 }
 """Further flags of `status`, by name: bits that leave every response as it is."""
@@ -119,7 +119,7 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "contact_force_outside_data": (
         outputs.CONTACT_FORCE_OUTSIDE_DATA,
-        "the contact force is above 0.25 of the beam's S_y B H: it may be 10 % too large",
+        "the force is above 0.25 of S_y B H of this deep beam (H > B/2): it may be 10 % too large",
     ),
     "shallow_dent": (
         outputs.SHALLOW_DENT,

@@ -164,7 +164,7 @@ def read_size(answer: Record, case: Record, contact: Record, pair: Pair) -> None
     if a > 0.5 * largest:
         answer.remarks |= CONTACT_CIRCLE_OUTSIDE_DATA
     yields = case.beam_yield_stress * case.beam_width * case.beam_depth
-    if contact.F_m > LARGEST_FORCE * yields:
+    if case.beam_depth >= 0.5 * case.beam_width and contact.F_m > LARGEST_FORCE * yields:
         answer.remarks |= CONTACT_FORCE_OUTSIDE_DATA
 
 

@@ -17,7 +17,6 @@ from impactlab.model.quantities import si
 from impactlab.report.answer import answers
 from impactlab.study import steps
 from impactlab.study.adaptive import extension, recommendation
-from impactlab.study.engine import Engine
 from impactlab.study.schema.readers import read_study
 from impactlab.study.store import holder
 
@@ -303,4 +302,4 @@ def test_trials_of_an_auto_discretisation_are_solved_where_the_study_is(folder, 
     assert not engines  # what is wrong with a profile is told before anything is solved
     asked = ("--workers", "3", "--scheduler", "tcp://127.0.0.1:1")
     assert here("run", "studies/automatic.yaml", *asked) == 1
-    assert engines == [Engine(workers=3, address="tcp://127.0.0.1:1")]
+    assert [(engine.workers, engine.address) for engine in engines] == [(3, "tcp://127.0.0.1:1")]

@@ -70,8 +70,8 @@ half the width (soft metal, E*/S_y = 820: indentation +5 %); of beams between ha
 deep as wide, force is up to 9 and indentation up to 5 % too large."""
 
 LARGEST_FORCE = 0.25
-"""Contact force over yield stress times section, for the corrections. On beams half as deep as wide
-the force is 1.7 % too large at 0.24, 2.5 at 0.28, 3.3 at 0.34 and 8 at 0.5."""
+"""Contact force over yield stress times section, for the corrections, of beams at least half as
+deep as wide: there the force is 1.7 % too large at 0.24, 2.5 at 0.28, 3.3 at 0.34 and 8 at 0.5."""
 LEAST_DENT = 0.2
 """Dent over indentation: shallower ones are 3 to 6 % too deep, for the fit weighs what is recovered
 by its share in the dent."""

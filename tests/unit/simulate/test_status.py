@@ -69,8 +69,8 @@ DEFAULT_LAW = replace(il.paper_impact(contact="finite_element"), beam_model="tim
         ("contact_circle", {"velocity": 15.0}, {"velocity": 20.0}),
         (
             "contact_circle",
-            {"velocity": 5.0, "beam_depth": 0.012, "beam_width": 0.036},
-            {"velocity": 5.0, "beam_depth": 0.012, "beam_width": 0.012},
+            {"velocity": 3.6, "beam_depth": 0.012, "beam_width": 0.036},
+            {"velocity": 3.6, "beam_depth": 0.012, "beam_width": 0.012},
         ),
         (
             "contact_force",

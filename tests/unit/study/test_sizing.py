@@ -165,7 +165,7 @@ def test_studies_without_a_sample_are_refused(tmp_path):
         title="Rod", function=stress_minus_strength, sampling=grid, results=tmp_path
     )
     with pytest.raises(il.StudyError, match="use any method but grid"):
-        sizing(declared.declared, declared.folder, None, ["area"], 0.01)
+        sizing(declared.declared, declared.folder, Engine(), ["area"], 0.01)
 
 
 @pytest.mark.parametrize("factor", [0.2, 5.0])

@@ -8,7 +8,7 @@ import pytest
 from impactlab.solve import compile_kernels
 from impactlab.solver import BEAM_MODELS, SCHEMES, WAVE_MODELS
 from impactlab.solver.contact import LAWS
-from impactlab.solver.kernels import is_extended, kernel_of
+from impactlab.solver.kernels import is_extended, kernel_of, step_counter
 from impactlab.study.solvers import kernels
 
 OPTIONS = [
@@ -48,4 +48,6 @@ def test_compiling_all_leaves_no_kernel_out(monkeypatch):
     kinds = itertools.product(range(len(BEAM_MODELS)), range(len(SCHEMES)), (False, True))
     of_spheres = itertools.product(map(BEAM_MODELS.index, WAVE_MODELS), range(len(SCHEMES)))
     several = {kernel_of(*kind, several=True) for kind in of_spheres}
-    assert set(programs) == {*map(kernel_of, *zip(*kinds, strict=True))} | several
+    assert set(programs) == {*map(kernel_of, *zip(*kinds, strict=True))} | several | {
+        step_counter()
+    }
