@@ -167,10 +167,13 @@ class Hypercube(DrawnTogether):
     @property
     def settings(self) -> dict[str, Any]:
         """The attributes of a design that describe its draws."""
-        if not (pairs := self.correlations):
-            return super().settings
-        names = {"correlated": [f"{first} {other}" for first, other, _ in pairs]}
-        return super().settings | names | {"rank_correlations": [rank for *_, rank in pairs]}
+        settings, pairs = super().settings, self.correlations
+        if pairs:
+            settings["correlated"] = [f"{first} {other}" for first, other, _ in pairs]
+            settings["rank_correlations"] = [rank for *_, rank in pairs]
+        if self.until:
+            settings["until_probability"] = self.until.coefficient_of_variation
+        return settings
 
     @property
     def no_surrogate(self) -> str:

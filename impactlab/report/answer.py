@@ -35,6 +35,7 @@ MINOR = (
     "remote_plastic_strain",
 )
 """Responses that long answers leave to the tables."""
+_OF_QUESTIONS = "Caution", "Sensitivity", "Saving", "The likeliest way to exceed it"
 
 
 def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
@@ -78,18 +79,22 @@ def answers(runs: xr.Dataset, analysis: xr.Dataset | None = None) -> list[str]:
 def entries(runs: xr.Dataset, analysis: xr.Dataset | None) -> tuple[str, list[list[Entry]], str]:
     """Return the headline of an answer, the entries of its other lines, and a note on the numbers.
 
-    The headline is a sentence without its full stop. A slow model that the study asks for leads.
+    The headline is a sentence without its full stop. The answer leads to a question that the study
+    asks beside its runs: about a slow model, or a rare event.
     """
     if analysis is None:
         headline, findings = _verification(runs)
         return headline, [[entry] for entry in findings[: LINES - 1]], ""
     headline, lines, note = _of_runs(runs, analysis)
-    if answer := analysis.attrs.get("slow_model_answer"):
-        slow, *rest = (line.removesuffix(".") for line in answer.splitlines())
+    if answer := analysis.attrs.get("question_answer"):
+        first, *rest = (line.removesuffix(".") for line in answer.splitlines())
         findings = [(subject, text) for subject, _, text in (line.partition(": ") for line in rest)]
-        findings = [entry for entry in findings if entry[0] != "Allocation"]
-        lines = [*packed(findings, 2), [("The study's own model", headline)], *lines]
-        headline, lines = slow, lines[: LINES - 1]
+        findings = [entry for entry in findings if entry[0] not in ("Allocation", "Runs")]
+        # of further responses, the tables tell
+        findings = findings[:1] + [entry for entry in findings[1:] if entry[0] in _OF_QUESTIONS]
+        findings.sort(key=lambda entry: entry[0] != "Caution")
+        lines = [[entry] for entry in (*findings[: LINES - 2], ("The sample alone", headline))]
+        headline = first
     return headline, lines, note
 
 
@@ -114,7 +119,8 @@ def _of_runs(runs: xr.Dataset, analysis: xr.Dataset) -> tuple[str, list[list[Ent
     if limits := limit_entries(runs, analysis):
         level, even = access.confidence(analysis), spread_evenly(runs)
         note = f"Above a limit: probability and its {level} interval{even}. {note}"
-        first, headline = [("Sensitivity", headline), *limits[1:]], ": ".join(limits[0])
+        subject = "Sensitivity" if families else "Range"
+        first, headline = [(subject, headline), *limits[1:]], ": ".join(limits[0])
     first += regime_entries(runs)
     last = measured.entries(analysis)
     if over := history_entries(analysis):

@@ -162,6 +162,8 @@ def answers_beside(runs: xr.Dataset, folder: Path) -> Iterator[tuple[str, str, s
             finding = ". ".join([headline, *cautions])
             if name == MULTIFIDELITY and "slow_model" in runs.attrs:
                 finding = "every statistic, the pairs and the costs"
+            if name == RARE_EVENT and "until_probability" in runs.attrs:
+                finding = "the runs, the interval and the likeliest way"
             if attrs.get("study_sha256") != runs.attrs.get("study_sha256"):
                 finding = "of an earlier text of this study, not of these runs"
             yield subject, finding, f"{name}.html"

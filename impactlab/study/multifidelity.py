@@ -30,7 +30,7 @@ from impactlab.model.checks import integer
 from impactlab.model.cost import A_SECOND
 from impactlab.model.quantities import engineering, time
 from impactlab.provenance import provenance
-from impactlab.study import MULTIFIDELITY
+from impactlab.study import MULTIFIDELITY, RARE_EVENT
 from impactlab.study.design import design
 from impactlab.study.engine import Engine, with_one_client
 from impactlab.study.execute import execute
@@ -154,17 +154,17 @@ def multifidelity(
     return dataset
 
 
-def slow_answer(runs: xr.Dataset, folder: Path) -> str:
-    """Return the answer in `folder` on the slow model that the study of the runs asks for."""
-    path = folder / f"{MULTIFIDELITY}.nc"
+def question_answer(runs: xr.Dataset, folder: Path) -> str:
+    """Return the answer in `folder` to what the study of the runs asks: of a slow model, if any."""
+    slow = runs.attrs.get("slow_model")
+    name = MULTIFIDELITY if slow else RARE_EVENT
+    path = folder / f"{name}.nc"
     if path.is_file():
-        with opened(path, "multifidelity", indexed=False) as stored:
+        with opened(path, name, indexed=False) as stored:
             if stored.attrs["study_sha256"] == runs.attrs["study_sha256"]:
                 return str(stored.attrs["answer"])
-    return (
-        f"No answer yet with {runs.attrs['slow_model']}.\n"
-        "Caution: the runs of the slow model are not solved: `impactlab run` solves them."
-    )
+    subject = f"with {slow}" if slow else "on the rare event"
+    return f"No answer yet {subject}.\nCaution: `impactlab run` solves the runs that it needs."
 
 
 def _scores(model: ScoreRuns, runs: int) -> Floats:
@@ -380,7 +380,8 @@ def stated(result: xr.Dataset, row: int, statistic: str) -> str:
     if np.isnan(values[0]):
         return ""
     if statistic == "exceedance":
-        value, low, high = (f"{number:.2g}" for number in values)
+        texts = [[f"{number:.{digits}g}" for number in values] for digits in (2, 3, 4)]
+        value, low, high = next((text for text in texts if len({*text}) == 3), texts[-1])
         return f"probability {value} ({low} to {high})"
     units = str(result["response_units"].values[row])
     value, low, high = (engineering(number, units) for number in values)

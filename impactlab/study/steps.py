@@ -352,10 +352,10 @@ def analyse_runs(
             files = listed(solved, "measurements")
             measured = chain.from_iterable(read_measurements(file, solved) for file in files)
             analysis = analysis.merge(compared(solved, analysis, list(measured)))
-        if "slow_model" in solved.attrs:
-            from impactlab.study.multifidelity import slow_answer
+        if {"slow_model", "until_probability"} & solved.attrs.keys():
+            from impactlab.study.multifidelity import question_answer
 
-            analysis.attrs["slow_model_answer"] = slow_answer(solved, runs.parent)
+            analysis.attrs["question_answer"] = question_answer(solved, runs.parent)
         write_netcdf(analysis, path, "analysis", *sources)
         for name in ("indices.csv", "indices.nc", "distribution.csv", "surrogate.nc"):
             path.with_name(name).unlink(missing_ok=True)  # perhaps another study's

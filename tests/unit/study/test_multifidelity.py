@@ -122,7 +122,7 @@ def test_a_study_with_a_slow_model_opens_with_its_answer(tmp_path):
     headline = other.answer.splitlines()[0]
     assert il.answers(runs, powers.analyse())[0] == headline
     page = unescape(powers.report().read_text("utf-8")).replace("\xa0", " ")
-    assert page.index(headline.removesuffix(".")) < page.index("The study's own model")
+    assert page.index(headline.removesuffix(".")) < page.index("The sample alone")
     assert page.index("Statistics of the slow model") < page.index('<section id="results"')
     assert (tmp_path / "power" / "multifidelity.html").is_file()
     section = il.multifidelity(powers, workers=1)  # all settings are the study's
