@@ -59,11 +59,11 @@ FAILURES: dict[str, tuple[int, str]] = {
     ),
     "no_shakedown": (
         outputs.NO_SHAKEDOWN,
-        "the last strike's sphere does not leave, or dent or fibres' dissipation still grow",
+        "the last strike still makes dent or dissipation grow, or its sphere does not leave",
     ),
     "not_steady": (
         outputs.NOT_STEADY,
-        "the last strike's sphere does not leave, or dent or residual deflection still grow",
+        "the last strike still makes dent or deflection grow, or its sphere does not leave",
     ),
 }
 """Reasons for a missing response, by name: (bit in `status`, in words)."""

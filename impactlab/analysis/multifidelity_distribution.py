@@ -16,6 +16,7 @@ import scipy  # its stats and special are loaded when first used
 from impactlab.types import Floats
 
 Statistic = Callable[[Floats, Floats, Floats, Floats], tuple[Floats, Floats, Floats]]
+Fit = Callable[[Floats, Floats, Floats], tuple[Floats, Floats, Floats]]
 LIMITS = 400
 """Outputs at which the distribution function is inverted."""
 
@@ -26,6 +27,13 @@ def line_through(low: Floats, high: Floats, every: Floats) -> tuple[Floats, Floa
     slope = about @ high / (about @ about)
     line = high.mean() + slope * about
     return line, high.mean() + slope * (every - low.mean()), high - line
+
+
+def parabola_through(low: Floats, high: Floats, every: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return the parabola of the pairs at them and at every low output, and the errors about it."""
+    mean, size = low.mean(), low.std()
+    parabola = np.polynomial.Polynomial.fit(low, high, 2, domain=[mean - size, mean + size])
+    return parabola(low), parabola(every), high - parabola(low)
 
 
 def spread(errors: Floats) -> float:
