@@ -149,8 +149,7 @@ def _solved(study: il.Study, workers: int = 1) -> Shown:
     analysis = read_netcdf(study.folder / "analysis.nc", "analysis")
     answers, compared = il.answers(runs, analysis), witness.findings(runs, analysis)
     captions = listed(study.folder / "figures")
-    for _, finding, page in answers_beside(runs, study.folder):
-        answers = [finding, *answers]
+    for *_, page in answers_beside(runs, study.folder):
         drawings = (study.folder / page).with_suffix("") / "figures"
         for name, caption in listed(drawings).items():
             captions[name] = caption

@@ -34,7 +34,7 @@ def likeliest_way(result: xr.Dataset, _: xr.Dataset) -> Figure:
     ax.axvline(0.0, color="0.4", linewidth=0.8)
     texts = zip(names, result["design_value"].values[order], strict=True)
     ax.set_yticks(rows, [f"{labels.sentence(str(name))}\n{value}" for name, value in texts])
-    ax.set_xlabel("standard deviations from the median (–)")
+    ax.set_xlabel("Standard deviations from the median (–)", loc="right")
     return style.finish(figure)
 
 
