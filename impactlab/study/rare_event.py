@@ -263,18 +263,18 @@ def rare_event(
         confidence=study.analysis.confidence,
         target=target,
         words=solver.sampling.words,
-        arguments=" --surrogate" * surrogate
-        + "".join(
-            f" --{name} {value:g}"
-            for (name, default), value in zip(
-                _DEFAULTS.items(), (samples, runs, target), strict=True
-            )
-            if value != default
-        ),
+        arguments=_options(samples, runs, target, surrogate=surrogate),
         answer=_answer(result, solver),
     )
     write_netcdf(dataset, folder / f"{RARE_EVENT}.nc", "rare_event")
     return dataset
+
+
+def _options(samples: int, runs: int, target: float, *, surrogate: bool) -> str:
+    """Return the options of `impactlab rare` that are not its defaults."""
+    values = zip(_DEFAULTS.items(), (samples, runs, target), strict=True)
+    options = [f" --{name} {value:g}" for (name, default), value in values if value != default]
+    return "".join([" --surrogate", *options] if surrogate else options)
 
 
 def place_runs(study: AnyStudy, folder: Path, engine: Engine, until: UntilProbability) -> None:

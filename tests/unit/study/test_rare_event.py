@@ -8,6 +8,7 @@ import xarray as xr
 from scipy.stats import norm
 
 import impactlab as il
+from impactlab.study import engine
 
 
 def load_minus_strength(load, strength):
@@ -22,9 +23,13 @@ def study(folder, function=load_minus_strength, **changes):
     return il.Study(title="Load", function=function, results=folder, **arguments)
 
 
-def test_runs_are_kept_and_give_the_same_bits_for_any_number_of_workers(tmp_path):
+def test_runs_are_kept_and_give_the_same_bits_for_any_number_of_workers(tmp_path, monkeypatch):
+    clients, client = [], engine._here
+    monkeypatch.setattr(engine, "_here", lambda *a, **kw: clients.append(a) or client(*a, **kw))
     first = il.rare_event(study(tmp_path / "one"), workers=1)
+    assert len(clients) == 1, "each level has a client of its own"
     again = il.rare_event(study(tmp_path / "one"), workers=1)
+    assert len(clients) == 1, "a client is opened for runs that are stored"
     other = il.rare_event(study(tmp_path / "two"), workers=2)
     assert first.probability.item() == again.probability.item() == other.probability.item()
     np.testing.assert_array_equal(first.design_point, other.design_point)

@@ -257,7 +257,7 @@ def test_between_the_sides_of_a_narrow_beam_metal_flows_as_in_3d(name, monkeypat
 
 @pytest.mark.parametrize("name", narrow_beams.DEEPER | narrow_beams.HELD_OUT)
 def test_contact_and_bending_share_the_metal_between_the_sides(name):
-    """As in 3-D, on beams whose section yields; 4 to 7 % too much force if they did not."""
+    """Sides and bending share the metal as in 3-D; without that the force is 4 to 7 % too large."""
     parameters = (narrow_beams.DEEPER | narrow_beams.HELD_OUT)[name]
     solid = pd.read_csv(narrow_beams.FILE, index_col="beam").loc[name]
     grid = il.Discretisation(nodes=101, courant=0.4)
