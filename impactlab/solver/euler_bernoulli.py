@@ -53,9 +53,10 @@ def _step(state: State, now: int, F: float) -> None:
         leave_tangents(beam, now, None, plastic, section, grid)
     first, stop, end = front[1], front[3] + 1, front[2] + 1
     outside = move_virgin(w, now, u, front[0], first, grid, section.yield_curvature)
-    outside += move(
-        w, now, u, beam.plastic, plastic.kappa_min, plastic.kappa_max, first, stop, grid
-    )
+    if first < stop:
+        outside += move(
+            w, now, u, beam.plastic, plastic.kappa_min, plastic.kappa_max, first, stop, grid
+        )
     if stop < end:
         outside += move_virgin(w, now, u, stop, end, grid, section.yield_curvature)
     if outside > 0.0:
