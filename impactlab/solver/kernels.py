@@ -136,6 +136,20 @@ def _run(model: BeamModel, extended: bool, rest: Callable[..., int]) -> Callable
     return run
 
 
+def _assembly(model: BeamModel) -> Callable[..., State]:
+    """Return a function that makes the state of a run, with further spheres where there are any."""
+    join = None if model.further is None else model.further.join
+
+    @allocating  # others do not own the arrays that they return
+    def assemble(state: State, table: Any, r: int, case: Record) -> State:
+        """Return the state of run r; state: that of the beam and the first sphere."""
+        if join is None:
+            return state
+        return State(*state[:5], join(state, table, r, case))
+
+    return assemble
+
+
 def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[..., None]:
     """Return the kernel of a model of the beam.
 
@@ -151,13 +165,12 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
     samples: shape (R, 5, S), filled with force, mid-span deflection, mid-span curvature, sphere
     displacement and indentation at S equal intervals from 0 to the duration, of the last strike; S
     = 0 for none. series: shape (R, n, len(SERIES)), filled with outputs.SERIES of each of n
-    strikes; n = 0 for none. deflection (R, nodes), plastic_strain and peeq (R, nodes, P // 2):
-    filled with the beam's final state, at rest after several strikes; length 0 for none. A model
-    whose sections have P fibres, outermost below first, fills (R, nodes, P). A run that diverges
-    leaves NaN and its status.
+    strikes; n = 0 for none. deflection (R, nodes), plastic_strain and peeq (R, nodes, P // 2, or P
+    with all fibres, outermost below first): filled with the beam's final state, at rest after
+    several strikes; length 0 for none. A run that diverges leaves NaN and its status.
     """
     make, renew, take, deflect = model.make, model.renew, model.take, model.deflect
-    join, read = (None, None) if model.further is None else model.further[:2]
+    assemble, read = _assembly(model), None if model.further is None else model.further.read
     rest = resting(model)
     run, rest_single = _run(model, extended, rest), resting_once(rest, extended)
     of_fibres = make_room, _section_at_rate if extended else cut_section
@@ -198,31 +211,19 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
                     renew(extra, case, section, grid)
                 else:
                     extra = make(case, section, grid)
-                if join is None:
-                    state = State(pair, section, grid, beam, plastic, extra)
-                else:
-                    alone = State(pair, section, grid, beam, plastic, extra)
-                    together = join(alone, table, r, case)
-                    state = State(pair, section, grid, beam, plastic, together)
-                now = run(
-                    case,
-                    answers[r],
-                    contacts[r],
-                    events[r],
-                    samples[r],
-                    series[r],
-                    state,
-                    steps[r],
-                )
+                alone = State(pair, section, grid, beam, plastic, extra)
+                state = assemble(alone, table, r, case)
+                answer, contact, event = answers[r], contacts[r], events[r]
+                now = run(case, answer, contact, event, samples[r], series[r], state, steps[r])
                 if read is not None:
-                    read(state, case, answers[r], table.answers[r])
+                    read(state, case, answer, table.answers[r])
                 if now < 0:
                     samples[r] = np.nan
                     continue
                 if deflection.shape[1] > 0:
                     deflect(state, now)
                 _keep_profiles(state, now, r, deflection, plastic_strain, peeq)
-                rest_single(case, answers[r], contacts[r], events[r], series[r], state)
+                rest_single(case, answer, contact, event, series[r], state)
 
     kernel.__qualname__ = name
     return allocating(kernel)

@@ -90,11 +90,23 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
     return fly
 
 
+def _struck(model: BeamModel) -> Callable[..., float]:
+    """Return a function that gives the deflection of the struck node without kinks, m."""
+    rise = None if model.further is None else model.further.rise
+
+    @inlined
+    def struck(state: State, contact: Record, now: int) -> float:
+        w_mid = state.beam.w[now, state.grid.mid] - kink.height(state.grid, contact.kink)
+        return float(w_mid if rise is None else w_mid - rise(state))
+
+    return struck
+
+
 def _touch_down(model: BeamModel) -> Callable[..., tuple[float, float]]:
     """Return a function that begins a strike."""
     beam_energy, mid_curvature, sag = model.energy, model.curvature, model.sag
     fast, land = model.flight is not None, None if model.flight is None else model.flight.land
-    rise = None if model.further is None else model.further.rise
+    struck = _struck(model)
     again = None if model.further is None else model.further.again
 
     @compiled
@@ -110,9 +122,8 @@ def _touch_down(model: BeamModel) -> Callable[..., tuple[float, float]]:
         if strike == 0:
             return 0.0, 0.0
         pair, section, grid, beam, plastic = state[:5]
-        w_mid = beam.w[now, grid.mid] - kink.height(grid, contact.kink)
-        if rise is not None and again is not None:
-            w_mid -= rise(state)
+        w_mid = struck(state, contact, now)
+        if again is not None:
             again(state, strike)
         events.w = events.w_before = events.w_max = w_mid
         w_s = w_mid + contact.delta_r
@@ -173,38 +184,43 @@ def _taking_away(model: BeamModel) -> Callable[..., int]:
     return take_away
 
 
-def _audit(model: BeamModel) -> Callable[..., float]:
+def _audit(model: BeamModel) -> Callable[..., bool]:
     """Return the audit of the energy of a model of the beam."""
     beam_energy, fast = model.energy, model.flight is not None
     brought = None if model.further is None else model.further.brought
 
     @inlined
-    def imbalance(
+    def audit(
         case: Record,
         state: State,
         contact: Record,
+        events: Record,
         now: int,
         sphere: tuple[float, float, float, float],
         F: float,
         u_mid: float,
         excess: float,
         at_touch: float,
-    ) -> float:
-        """Return the energy missing or in excess, over the kinetic energy of spheres that touched.
+    ) -> bool:
+        """Return whether the energy missing or in excess is below that of spheres that touched.
 
-        After a step, of its beginning. sphere: its displacement (m), velocity before and after the
+        Their kinetic energy, over which the largest error is kept. After a step, of its beginning,
+        with fibres brought up to date. sphere: its displacement (m), velocity before and after the
         step (m/s), approach (m). u_mid (m): u at mid-span before the step. excess (J): see
         BeamModel.spread. at_touch (J): the energy at the strike's beginning, without the sphere's.
         """
         w_s, v_before, v_after, approach = sphere
+        catch_up(state.plastic, state.section)
         start = 0.5 * case.sphere_mass * case.velocity**2
         falling = case.sphere_mass * (0.5 * v_before * v_after - case.gravity * w_s)
         in_beam = beam_energy(state, now, F, u_mid) + excess
         kept, lost = contact_history.energies(contact, state.pair, approach, fast)
         missing = abs(falling + in_beam + kept + lost - (start + at_touch))
-        return missing / start if brought is None else missing / (start + brought(state))
+        error = missing / start if brought is None else missing / (start + brought(state))
+        events.energy_error = max(events.energy_error, error)
+        return bool(error < 1.0)
 
-    return imbalance
+    return audit
 
 
 def contact_of(model: BeamModel, extended: bool) -> Callable[..., tuple[float, float, float]]:
@@ -266,9 +282,8 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
     """Return the time loop of a model of the beam; extended: see kernels.py."""
     move_beam, mid_curvature, spread = model.step, model.curvature, model.spread
     flight_stride, fly = model.flight_stride, None if model.flight is None else _leaps(model.flight)
-    touch, touch_down, imbalance = contact_of(model, extended), _touch_down(model), _audit(model)
-    take_away = _taking_away(model)
-    rise = None if model.further is None else model.further.rise
+    touch, touch_down, audit = contact_of(model, extended), _touch_down(model), _audit(model)
+    take_away, struck = _taking_away(model), _struck(model)
 
     @inlined
     def march(
@@ -288,7 +303,7 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
         steps until the next on the moving beam, with the sphere taken away once `steps` are over,
         if it leaves; 0: none follows. now: the first row.
         """
-        pair, section, grid, beam, plastic = state[:5]
+        pair, grid, beam = state.pair, state.grid, state.beam
         w, u, dt, mid = beam.w, beam.u, grid.dt, grid.mid
         stride = min(max(_LEAST_STRIDE, steps // _AUDITS), _LARGEST_STRIDE)
         # half a step before the first touch
@@ -300,9 +315,7 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
         here, ahead = (0.0, 0.0, 0.0, 0.0, 0.0), 0.0  # the mean under the pressure, of mid-span
         while step <= end:
             t, u_mid = step * dt, u[mid]
-            w_mid = w[now, mid] - kink.height(grid, contact.kink)
-            if rise is not None:
-                w_mid -= rise(state)
+            w_mid = struck(state, contact, now)
             F, approach, delta = touch(case, state, contact, events, now, w_s - w_mid - ahead, t)
             v_after = v_s + dt * (case.gravity - F * per_mass)
             event_tracker.update_events(events, approach, contact.delta_r, w_mid, F, v_s, t, dt)
@@ -317,8 +330,7 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
                 )
                 if leapt > 0:
                     w_s += leapt * (sphere[1] + 0.5 * (leapt + 1) * sphere[2])
-                    v_s += leapt * dt * case.gravity
-                    step += leapt
+                    v_s, step = v_s + leapt * dt * case.gravity, step + leapt
                     to_audit = max(to_audit - leapt, 1)
                     events.w = events.w_before = w[now, mid] - u[mid]
                     events.delta = events.delta_before = w_s - dt * v_s - events.w - ahead
@@ -332,11 +344,8 @@ def time_loop(model: BeamModel, extended: bool) -> Callable[..., int]:
             to_audit = min(to_audit - 1, stride) if F > 0.0 else to_audit - 1
             if to_audit == 0 or step == end:
                 to_audit = max(stride, flight_stride)
-                catch_up(plastic, section)
                 sphere = (w_s, v_s, v_after, approach)
-                error = imbalance(case, state, contact, now, sphere, F, u_mid, excess, rest)
-                events.energy_error = max(events.energy_error, error)
-                if not error < 1.0:
+                if not audit(case, state, contact, events, now, sphere, F, u_mid, excess, rest):
                     return -1
                 end = take_away(
                     case, state, events, sphere, u_mid / dt, rest, step, steps, end, interval

@@ -45,31 +45,28 @@ def runs_of_table(
     """Make runs of a table of inputs and outputs, for `analyse`, `answers`, `table` and `plot`.
 
     The rows may come from any design, or from measurements, provided that they are independent
-    draws or spread more evenly; each counts the same, so weighted rows have to be drawn again
-    by their weights. Inputs may be correlated: pairs whose rank correlation chance does not explain
-    are named in the answers.
+    draws or spread more evenly. The answers name pairs of inputs whose correlation is no chance.
 
     Parameters
     ----------
     inputs : mapping, pandas.DataFrame or xarray.Dataset
         Numbers or words by name of the parameter, (rows,).
     outputs : mapping, pandas.DataFrame or xarray.Dataset
-        Numbers by name of the response, (rows,). A response with a missing value (NaN) has no
-        index: its verdict is `failed_runs`.
+        Numbers by name of the response, (rows,); with a NaN its verdict is `failed_runs`.
     indices : str or sequence of str, default "delta"
-        Indices of given data, as those of `Latin`; the first one ranks the parameters.
+        Indices of given data, as those of `Latin`; the first one ranks.
     limits : mapping of str to float, optional
         Limit by response, for "target_hsic": what decides whether the response exceeds it.
     seed : int, default 1
-        Equal seeds give equal resamples and the same order of the rows.
+        Seed of the resamples and of the order of the rows.
     title : str, default "table"
         Name for messages and answers.
 
     Returns
     -------
     xarray.Dataset
-        The table on `run`, in random order: rows that are sorted by one input would else add its
-        share to those that hold equal values. The coordinate `row` holds the row's number.
+        The table on `run`, in random order (rows that are sorted by one input would else add its
+        share to equal values), with each row's number on the coordinate `row`.
 
     Raises
     ------
@@ -111,7 +108,7 @@ def runs_of_table(
         "analyses": "sensitivity",
     }
     if limits:
-        attrs |= {"limited": list(limits), "limits": [float(value) for value in limits.values()]}
+        attrs |= {"limited": list(limits), "limits": list(map(float, limits.values()))}
     status = {"status": ("run", np.zeros(rows, np.int32))}
     axes = {"run": np.arange(rows), "row": ("run", order, {"long_name": "row of the table"})}
     attrs |= _correlations({name: parameters[name].astype(float) for name in numbers})
