@@ -144,13 +144,14 @@ def test_deflections_converge_at_second_order(scheme, values):
     assert 3.3 < coarse / fine < 5.0
 
 
-@pytest.mark.parametrize("scheme", ["leapfrog", "modal"])
-def test_vanishing_damping_changes_nothing(scheme):
+@pytest.mark.parametrize(
+    ("model", "scheme"),
+    [("euler_bernoulli", "leapfrog"), ("euler_bernoulli", "modal"), ("timoshenko", "leapfrog")],
+)
+def test_vanishing_resistance_changes_nothing(model, scheme):
     grid = il.Discretisation(nodes=41, points=9, scheme=scheme)
     runs = [
-        il.simulate(
-            resisted(12.0, "euler_bernoulli", "contact_patch", 0.035, **values), grid, duration=4e-3
-        )
+        il.simulate(resisted(12.0, model, "contact_patch", 0.035, **values), grid, duration=4e-3)
         for values in ({}, {"mass_damping": 1e-9}, {"foundation_stiffness": 1e-3})
     ]
     for name in ("peak_force", "impulse", "plastic_dissipation", "maximum_deflection"):

@@ -213,23 +213,6 @@ def test_a_strip_at_rest_is_the_mean_of_its_swing():
     assert run.energy_error.item() < 5e-3
 
 
-@pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning")
-@pytest.mark.parametrize(("scheme", "nodes"), [("leapfrog", 41), ("modal", 33)])
-def test_a_damped_beam_comes_to_rest_by_itself(scheme, nodes):
-    """Alike what static equilibrium leaves, with fibres that have yielded."""
-    impact = replace(FLOATING, velocity=20.0, strikes=3)
-    impact = replace(impact, beam=replace(impact.beam, mass_damping=600.0))
-    grid = il.Discretisation(nodes=nodes, scheme=scheme)
-    swinging = replace(impact, strike_interval="90 ms")
-    still, run = (
-        il.simulate(case, grid, duration="12 ms", samples=2) for case in (impact, swinging)
-    )
-    assert np.abs(series(still, "residual_deflection")).min() > 1e-4
-    for name in SERIES:
-        assert series(run, name) == pytest.approx(series(still, name), rel=1e-6), name
-    assert run.energy_error.item() < 0.01
-
-
 @pytest.mark.parametrize("scheme", ["leapfrog", "modal"])
 def test_energy_is_balanced_over_all_strikes_on_a_moving_beam(scheme):
     """Without damping, with what each sphere brings and takes away."""

@@ -1,13 +1,11 @@
-"""A fibre against closed forms; a section's elastic interval and energies.
-
-Its moments are in tests/verification.
-"""
+"""A fibre against closed forms; a section's elastic interval and energies."""
 
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+import impactlab as il
 from impactlab.solve import fibre_section
 from impactlab.solver import RULES
 from impactlab.solver.fibre_plasticity import plastic_energies
@@ -15,6 +13,7 @@ from impactlab.solver.section import bend as bend_row
 from impactlab.solver.section import elastic_range, return_mapping
 from impactlab.verification.solutions import bending
 
+BEAM = il.paper_impact().beam
 HARDENINGS = [(0.0, 0.0), (5e9, 0.0), (0.0, 5e9), (2e9, 3e9)]
 every_hardening = pytest.mark.parametrize(("isotropic", "kinematic"), HARDENINGS)
 
@@ -62,6 +61,25 @@ def test_fibres_are_the_rules_scaled_to_the_depth(cut, rule, points):
     assert section.area == pytest.approx(2 * area[upper], rel=1e-12)
     assert section.stiffness == pytest.approx(210e9 * np.sum(area * z**2), rel=1e-12)
     assert section.yield_curvature == pytest.approx(345e6 / (210e9 * z.max()), rel=1e-12)
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("points", [2, 3, 4, 5, 9, 21, 64])
+def test_monotone_bending_is_that_of_the_rule(cut, rule, points):
+    curvatures = np.linspace(0.1, 20, 40) * bending.yield_curvature(BEAM)
+    _, moments, _, _ = follow(cut(rule, points), curvatures)
+    expected = bending.path_moments(BEAM, curvatures, *bending.rule(rule, points))
+    assert -moments == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_moment_curvature_tends_to_the_exact_one(cut, rule):
+    curvatures = np.linspace(0.5, 8, 16) * bending.yield_curvature(BEAM)
+    exact = np.array([bending.moment(BEAM, kappa) for kappa in curvatures])
+    moments = [follow(cut(rule, points), curvatures)[1] for points in (11, 41, 161)]
+    errors = [np.abs(-ours / exact - 1).max() for ours in moments]
+    assert errors[-1] < 2e-3
+    assert errors[-1] < errors[0] / 10
 
 
 @every_hardening
