@@ -45,7 +45,7 @@ def test_modes_have_the_frequencies_of_the_characteristic_equation(springs):
 @pytest.mark.parametrize("springs", [*SPRINGS, *PLAIN])
 def test_the_grids_frequencies_converge_to_it_at_second_order(springs):
     exact, errors = sprung_roots(springs, 4) ** 2, []
-    still = max(2 - np.count_nonzero(springs), 0)
+    still = max(2 - np.count_nonzero(springs), 0) + springs.count((np.inf, np.inf))
     ends, stiffnesses = kinds(springs)
     for nodes in (41, 81):
         grid = make_grid(nodes, 1 / (nodes - 1), 1e-6, 1.0, 1.0, *ends, 4, *stiffnesses)
