@@ -1,9 +1,6 @@
 """The beam that stretches: closed forms, limits, energy, order, OpenSees and the other models."""
 
 import itertools
-import os
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -323,24 +320,3 @@ def test_what_the_beam_does_not_have_is_refused(changes, message):
     impact = replace(PAPER, beam=replace(PAPER.beam, **beam))
     with pytest.raises(ValueError, match=message):
         il.simulate(replace(impact, beam_model="von_karman", **rest), grid, duration=1e-3)
-
-
-PLAIN = """
-import dataclasses, impactlab as il
-impact = dataclasses.replace(il.paper_impact(20.0), beam_model="von_karman")
-run = il.simulate(impact, il.Discretisation(nodes=7, points=5), duration=4e-5)
-w = run.midspan_deflection.values[-1].item()
-"""
-
-
-def test_the_kernel_runs_as_plain_python():
-    compiled = {}
-    exec(PLAIN, compiled)
-    process = subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", f"{PLAIN}\nprint(w)"],
-        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert float(process.stdout) == pytest.approx(compiled["w"], rel=1e-12)
