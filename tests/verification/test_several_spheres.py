@@ -111,6 +111,25 @@ def test_a_sphere_that_comes_too_late_changes_no_bit(option):
     assert both.number_of_contacts_of_spheres.values[1] == 0
 
 
+@pytest.mark.parametrize(
+    "option", [option for option in OPTIONS if "strikes" not in OPTIONS[option]]
+)
+@pytest.mark.parametrize("end", ["pinned", "clamped", "free"])
+def test_half_a_beam_moves_as_the_whole(option, end):
+    """A second sphere, which comes too late, makes one of the other."""
+    impact, grid = optional(option, 20.0)
+    impact = held(end, end, 0.5, impact)
+    if end == "free" and impact.contact_compliance == "strip":
+        pytest.skip("no strip has free ends")
+    whole = replace(impact, further_spheres="0.75 9 0.002001")
+    ours, both = (il.simulate(each, grid, duration="2 ms") for each in (impact, whole))
+    assert ours.peak_plastic_strain.item() > 1e-4
+    size = np.abs(ours.deflection).max().item()
+    assert both.deflection.values == pytest.approx(ours.deflection.values, abs=1e-6 * size)
+    for name in (*ALONE, "plastic_dissipation", "energy_error"):
+        assert both[name].item() == pytest.approx(ours[name].item(), rel=1e-5, nan_ok=True), name
+
+
 @OPTION
 def test_energy_is_balanced_over_all_spheres(option):
     """To an error that falls with the time step; with prestress it does so to first order."""

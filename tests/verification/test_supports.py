@@ -10,8 +10,7 @@ from scipy.integrate import cumulative_trapezoid
 import impactlab as il
 from impactlab.model.case_table import case_table
 from impactlab.model.parameters import with_values
-from impactlab.solve import fibre_section
-from impactlab.solver import SUPPORTS, euler_bernoulli, strip, timoshenko
+from impactlab.solver import SUPPORTS
 from impactlab.solver.beam import (
     add_moment,
     copies,
@@ -19,13 +18,9 @@ from impactlab.solver.beam import (
     make_grid,
     mirror,
 )
-from impactlab.solver.contact.history import make_pair
-from impactlab.solver.fibre_plasticity import make_plastic_state
-from impactlab.solver.stability import discretise
-from impactlab.solver.state import State
 from impactlab.verification.solutions.bending import plastic_moment
 
-from ..end_modes import PAIRS, PLAIN, held, response_errors
+from ..end_modes import PAIRS, held, response_errors
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
@@ -102,57 +97,6 @@ def test_a_mirrored_impact_has_the_same_answers(left, right, velocity, model):
     assert one.plastic_zone_length.item() == pytest.approx(
         other.plastic_zone_length.item(), abs=1e-6
     )
-
-
-@pytest.mark.long  # the steps are compiled by themselves
-@pytest.mark.parametrize(
-    ("model", "end"),
-    [*itertools.product((euler_bernoulli, timoshenko), PLAIN), (strip, "clamped")],
-)
-def test_the_whole_beam_moves_as_its_half(model, end):
-    """Under a force in the middle by which sections yield; the whole has another struck node."""
-    impact = il.paper_impact(10.0)
-    if model is not euler_bernoulli:
-        impact = replace(impact, beam_model="timoshenko")
-    if model is strip:
-        impact = replace(impact, contact_compliance="strip")
-    impact = held(end, end, 0.5, impact)
-    case = case_table(impact, il.Discretisation(nodes=41), duration=2e-3)[0]
-    section = fibre_section(case)
-    half, steps = discretise(case, make_pair(case), section)
-    sizes = 41, half.dx, half.dt, half.mu, section.stiffness
-    kind = SUPPORTS.index(end)
-    whole = make_grid(*sizes, kind, kind, 4)
-    whole = whole._replace(mid=whole.mid + 16)
-    assert (whole.mid, whole.last > half.last) == (half.mid, True)
-    states = []
-    for grid in (half, whole):
-        state = State(
-            make_pair(case),
-            section,
-            grid,
-            make_beam(grid),
-            make_plastic_state(grid, section),
-            model.MODEL.make(case, section, grid),
-        )
-        states.append(state)
-    for step in range(steps):
-        F = max(8e4 * np.sin(np.pi * step * half.dt / 5e-4), 0.0) * (step * half.dt < 5e-4)
-        now, before = step % 2, [state.beam.u[half.mid] for state in states]
-        for state in states:
-            model.MODEL.step(state, now, F)
-        if step % 500 == 0:
-            ours, both = (
-                model.MODEL.energy(state, now, F, u_mid)
-                for state, u_mid in zip(states, before, strict=True)
-            )
-            assert ours == pytest.approx(both, rel=1e-9)
-    left = slice(0, half.mid + 1)
-    w, peeq = states[0].beam.w[:, left], states[0].plastic.peeq[left]
-    assert peeq.max() > 1e-4
-    assert np.abs(w).max() > 1e-4
-    assert states[1].beam.w[:, left] == pytest.approx(w, abs=1e-9 * np.abs(w).max())
-    assert states[1].plastic.peeq[left] == pytest.approx(peeq, abs=1e-9)
 
 
 @pytest.mark.parametrize("place", [0.0, 0.3, 0.5])

@@ -1,11 +1,11 @@
-"""The modal scheme: its step against closed forms, its list of sections, balance and order."""
+"""The modal scheme: its step against closed forms, its list of sections, and balance."""
 
 import numba
 import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.simulate import simulate, simulate_many
+from impactlab.simulate import simulate_many
 from impactlab.solve import fibre_section
 from impactlab.solver.beam import make_grid
 from impactlab.solver.contact.history import make_pair
@@ -15,10 +15,7 @@ from impactlab.solver.modes import deflect, make_modes, modal_energy, mode_curva
 from impactlab.solver.section import FAR
 from impactlab.solver.stability import discretise
 from impactlab.variables import STATUS_FLAGS
-from impactlab.verification.cases import elastic
-from impactlab.verification.modal_series import error
 from impactlab.verification.schemes import drawn
-from impactlab.verification.solutions.modal import solve
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
@@ -169,25 +166,3 @@ def test_random_cases_stay_in_balance_at_the_largest_time_step():
     assert not (runs.status.values & STATUS_FLAGS["diverged"][0]).any()
     assert np.nanmax(runs.energy_error.where(runs.nodes > 20)) < 1e-2
     assert runs.energy_error.max() < 0.1
-
-
-@JIT_ONLY
-def test_order_of_convergence_in_an_elastic_impact():
-    """Second order of force and deflection, that of dt; first of the curvature under the load."""
-    impact = elastic(il.paper_impact(0.99))
-    series = solve(impact, 2e-3)
-    coarse, fine = (
-        simulate(
-            impact,
-            il.Discretisation(nodes=nodes, points=3, scheme="modal"),
-            duration=2e-3,
-            samples=401,
-        )
-        for nodes in (11, 41)
-    )
-    orders = {
-        name: np.log2(error(name, series, coarse) / error(name, series, fine)) / 2
-        for name in ("contact_force", "midspan_deflection", "midspan_curvature")
-    }
-    assert list(orders.values()) == pytest.approx([2.0, 2.0, 1.0], abs=0.25), orders
-    assert error("contact_force", series, fine) < 2e-4
