@@ -79,7 +79,7 @@ def test_curvatures_are_orthogonal_and_follow_the_closed_form(left, right, place
     assert (errors[1] < np.maximum(0.3 * errors[0], 1e-9)).all()
 
 
-@pytest.mark.parametrize("nodes", [5, 21])
+@pytest.mark.parametrize("nodes", [5, 21, 61])
 @pytest.mark.parametrize(
     ("left", "right", "place", "stiff"),
     [

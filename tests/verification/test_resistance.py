@@ -263,20 +263,6 @@ def test_leaps_begin_from_the_rest_that_the_foundation_leaves():
 
 
 @pytest.mark.parametrize(
-    ("values", "change", "message"),
-    [
-        ({"mass_damping": -1.0}, {}, "Beam.mass_damping = -1.0: must not be negative"),
-        ({"stiffness_damping": 1e-6}, {"beam_model": "spring_mass"}, "must be euler_bernoulli or"),
-        ({"damping_ratio": 0.01}, {"beam_model": "rigid"}, "must be euler_bernoulli or"),
-        ({"damping_ratio": 0.01}, {}, "damping_ratio = 0.01: is of modes: set scheme: modal"),
-    ],
-)
-def test_damping_without_a_model_or_a_scheme_is_refused(values, change, message):
-    with pytest.raises(ValueError, match=message):
-        case_table(replace(resisted(**values), **change), il.Discretisation(), duration=1e-3)
-
-
-@pytest.mark.parametrize(
     "values", [{"damping_ratio": 0.3}, {"mass_damping": 1e3}, {"stiffness_damping": 1e-3}]
 )
 def test_implausible_damping_warns(values):

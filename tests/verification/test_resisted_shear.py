@@ -237,22 +237,3 @@ def test_a_slender_beam_moves_as_euler_bernoullis(values):
         histories.append(run.midspan_deflection.values)
     size = np.abs(histories[0]).max()
     assert np.abs(histories[1] - histories[0]).max() < 2e-3 * size
-
-
-@pytest.mark.parametrize(
-    ("values", "change", "message"),
-    [
-        (BED, {"contact_compliance": "strip"}, "needs a beam without foundation_stiffness: set"),
-        (RAYLEIGH, {"contact_compliance": "strip"}, "needs a beam without mass_damping: set"),
-        (BED, {"beam_model": "rigid"}, "must be euler_bernoulli or elastic or timoshenko"),
-        ({"damping_ratio": 0.01}, {}, "damping_ratio = 0.01: is of modes"),
-        (
-            {"foundation_stiffness": 1e12},
-            {"strikes": 2},
-            r"^strikes = 2: must be 1 on so stiff a foundation",
-        ),
-    ],
-)
-def test_what_springs_and_damping_cannot_have_is_refused(values, change, message):
-    with pytest.raises(ValueError, match=message):
-        case_table(replace(beam_of(**values), **change), il.Discretisation(), duration=1e-3)

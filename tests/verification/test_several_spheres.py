@@ -321,38 +321,6 @@ def test_a_volley_waits_until_all_spheres_have_left():
     assert (run.status_of_spheres.values == 512).all()
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"beam_model": "rigid"}, r"^Impact\.beam_model = 'rigid': must be"),
-        (
-            {"beam_model": "timoshenko", "contact_compliance": "beam"}
-            | {"further_spheres": "0.35 1 0"},
-            "needs further_spheres 1.5 depths and widths from each other",
-        ),
-        (
-            {"load": "contact_patch", "scheme": "modal"},
-            "^load = 'contact_patch': must be point with further_spheres and scheme: modal: change",
-        ),
-        ({"further_spheres": "0.33 1 0"}, "^further_spheres: lies between two of the 41 nodes"),
-        ({"further_spheres": "0.25 1 0"}, "must have a place of its own each: strikes repeat"),
-        (
-            {"further_spheres": "0.25000000001 1 0"},
-            "^further_spheres: must have a place of its own",
-        ),
-        ({"further_spheres": "0.75 1"}, r"a row needs 3 numbers: strike_position, velocity, delay"),
-        ({"further_spheres": "1 1 0"}, "must have places above 0 and below 1 of the span, or at a"),
-        ({"further_spheres": [{"velocity": 1}]}, r"must be a list of spheres, 1 to 8, as \[\{str"),
-    ],
-)
-def test_what_has_one_sphere_alone_is_refused(change, message):
-    grid = replace(GRID, scheme=change.pop("scheme", "leapfrog"))
-    with pytest.raises(ValueError, match=message):
-        il.simulate(
-            replace(PAPER, **{"further_spheres": "0.75 1 0"} | change), grid, duration="1 ms"
-        )
-
-
 def test_a_list_of_spheres_varies_in_no_study():
     with pytest.raises(ValueError, match="further_spheres: is the same in all runs: vary velocity"):
         il.simulate_many(

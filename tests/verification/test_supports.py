@@ -8,8 +8,6 @@ import pytest
 from scipy.integrate import cumulative_trapezoid
 
 import impactlab as il
-from impactlab.model.case_table import case_table
-from impactlab.model.parameters import with_values
 from impactlab.solver import SUPPORTS
 from impactlab.solver.beam import (
     add_moment,
@@ -142,44 +140,3 @@ def test_a_heavy_sphere_pushes_the_beam_to_its_collapse_load(ends, place, factor
     run = il.simulate(impact, grid, duration="0.4 s" if factor > 1 else "1.2 s", samples=2001)
     force = run.contact_force.values[-500:].mean()
     assert force == pytest.approx(factor * plastic_moment(impact.beam) / impact.beam.span, rel=0.02)
-
-
-STRIP = {"beam_model": "timoshenko", "contact_compliance": "strip"}
-CORRECTED = {"beam_model": "timoshenko", "contact_prestress": "bending"}
-
-
-@pytest.mark.parametrize(
-    ("varied", "message"),
-    [
-        (
-            {"strike_position": 0.33},
-            r"^strike_position = 0\.33: .* take 0\.325 or 0\.35, or 101 nodes$",
-        ),
-        ({"strike_position": 0.0}, r"^Impact\.strike_position = 0\.0: must be a share"),
-        (
-            {"support_right": "free", "beam_model": "spring_mass"},
-            r"^Impact\.beam_model = 'spring_mass': must be",
-        ),
-        (
-            STRIP | {"support_left": "free"},
-            r"'strip': needs ends that are pinned or clamped: set 'beam'$",
-        ),
-        (
-            CORRECTED | {"strike_position": 0.1},
-            r"'bending': needs a strike 1\.5 depths and widths from the ends",
-        ),
-        (
-            STRIP | {"strike_position": 0.1},
-            r"'strip': needs a strike 1\.5 depths and widths from the ends",
-        ),
-        (
-            {"strike_position": 0.25, "beam_model": "rigid"},
-            r"^Impact\.beam_model = 'rigid': must be",
-        ),
-    ],
-)
-def test_what_lacks_other_beams_refuses_them(varied, message):
-    with pytest.raises(ValueError, match=message):
-        case_table(
-            *with_values(il.paper_impact(), il.Discretisation(nodes=41), varied), duration=1e-3
-        )

@@ -303,20 +303,3 @@ def test_a_pulled_beams_vibrations_decay_by_the_bending_alone():
     spans = itertools.pairwise(crossings)
     peaks = [np.abs(w[(times > start) & (times < end)]).max() for start, end in spans]
     assert -np.diff(np.log(peaks)) / np.diff(crossings[1:]) == pytest.approx(decay, rel=5e-3)
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"contact_compliance": "strip"}, "set beam_model: timoshenko"),
-        ({"scheme": "modal"}, "beam_model = 'von_karman' has 'leapfrog' alone"),
-    ],
-)
-def test_what_the_beam_does_not_have_is_refused(changes, message):
-    beam = {name: value for name, value in changes.items() if "left" in name}
-    scheme = changes.get("scheme", "leapfrog")
-    rest = {name: value for name, value in changes.items() if name not in {*beam, "scheme"}}
-    grid = il.Discretisation(nodes=41, scheme=scheme)
-    impact = replace(PAPER, beam=replace(PAPER.beam, **beam))
-    with pytest.raises(ValueError, match=message):
-        il.simulate(replace(impact, beam_model="von_karman", **rest), grid, duration=1e-3)

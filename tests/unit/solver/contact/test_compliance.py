@@ -275,23 +275,6 @@ def test_neither_a_wide_beam_nor_a_half_space_has_sides():
         assert crowding(replace(narrow, contact_compliance="half_space")) == 0.0
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"beam_model": "euler_bernoulli"}, "beam_model: timoshenko"),
-        ({"contact_compliance": "strip", "beam_depth": 0.07}, "as wide as deep at least"),
-        ({"beam_width": 0.15}, "depth over width from 0.2 to 4"),
-        ({"beam_span": 0.1}, "span of 3 depths and widths"),
-    ],
-)
-def test_refusals(change, words):
-    values = {"beam_model": "timoshenko", "contact_compliance": "beam"} | change
-    with pytest.raises(ValueError, match=words):
-        il.simulate_many(
-            il.paper_impact(), duration=1e-6, varied={key: [each] for key, each in values.items()}
-        )
-
-
 def test_a_factor_of_a_study_as_any_other():
     both = il.simulate_many(
         replace(il.paper_impact(contact="hertz"), beam_model="timoshenko"),
