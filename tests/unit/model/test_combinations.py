@@ -94,6 +94,6 @@ REFUSED = [
 
 @pytest.mark.parametrize(("values", "message"), REFUSED)
 def test_what_cannot_be_had_together_is_refused(values, message):
+    base = il.paper_impact(), il.Discretisation(nodes=41)
     with pytest.raises(ValueError, match=message):
-        impact = with_values(il.paper_impact(), il.Discretisation(nodes=41), values)
-        case_table(*impact, duration=1e-3)
+        case_table(*with_values(*base, values), duration=1e-3)
