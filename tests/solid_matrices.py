@@ -22,7 +22,7 @@ def matrices(impact, mesh):
             (node, axis) for node in beam for axis in range(3) if system.inverse_mass[node, axis]
         ]
         number = np.array(freedoms).T
-        key = mesh.nodes.tobytes(), number.tobytes(), impact.beam.material
+        key = mesh.nodes.tobytes(), mesh.full.tobytes(), number.tobytes(), impact.beam.material
         if key not in _STIFFNESS:
             _STIFFNESS[key] = csc_array(np.array([*_columns(system, freedoms, number)]))
         springs = system.springs.diagonal(len(mesh.nodes))[number[0], number[1]]

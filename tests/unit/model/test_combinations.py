@@ -1,4 +1,4 @@
-"""What cannot be had together is refused, and the message says what to change."""
+"""Combinations that are refused, with a message that says what to change."""
 
 import pytest
 
