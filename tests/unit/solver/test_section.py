@@ -1,10 +1,13 @@
 """A fibre against closed forms; a section's elastic interval and energies."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from impactlab.solve import fibre_section
 from impactlab.solver import RULES
+from impactlab.solver.fibre_plasticity import plastic_energies
 from impactlab.solver.section import bend as bend_row
 from impactlab.solver.section import return_mapping
 from impactlab.verification.solutions import bending
@@ -70,6 +73,20 @@ def test_interval_ends_where_the_first_fibre_yields(cut, isotropic, kinematic):
             after = peeq.copy()
             bend(section, kappa, plastic.copy(), after)
             assert np.any(after > peeq) == flows
+
+
+@every_hardening
+def test_work_of_the_moment_is_stored_or_dissipated(cut, isotropic, kinematic):
+    """Along a path back to zero curvature; kappa = w_xx, so the work is that of -M."""
+    section = cut(isotropic=isotropic, kinematic=kinematic)
+    turns = [0.0, 5.0, -4.0, 2.0, 0.0]
+    legs = [np.linspace(a, b, 501)[1:] for a, b in pairwise(turns)]
+    path = np.concatenate([[0.0], *legs]) * section.yield_curvature
+    _, moments, plastic, peeq = follow(section, path)
+    work = np.trapezoid(-moments, path)
+    stored, dissipated = plastic_energies(section, plastic[np.newaxis], peeq[np.newaxis], 0)
+    assert stored > 0
+    assert stored + dissipated == pytest.approx(work, rel=1e-4)
 
 
 E, S_y = 210e9, 345e6
