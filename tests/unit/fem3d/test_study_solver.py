@@ -83,7 +83,7 @@ SPRINGS = {"support_left": "elastic", "stiffness_left": 1e8, "rotational_stiffne
     ],
     ids=["ends and places", "springs and foundation", "damping"],
 )
-def test_what_is_told_of_the_beam_reaches_the_3d_model(beam, name, values):
+def test_ends_springs_and_damping_reach_the_3d_model(beam, name, values):
     keys = ", ".join(f"{key}: {value}" for key, value in beam.items())
     text = TEXT.replace("base: paper", f"base: paper, beam: {{{keys}}}")
     text = text.split("sampling:")[0] + (
@@ -92,15 +92,15 @@ def test_what_is_told_of_the_beam_reaches_the_3d_model(beam, name, values):
         f"  parameters: {{beam_model: [timoshenko, solid], {name}: {[*values]}}}\n"
         "responses: [peak_force, energy_error]\n"
     )
-    cases = witness.cases(design(study_of_text("told", text)), ALL[:4])
+    cases = witness.cases(design(study_of_text("beams", text)), ALL[:4])
     answers = witness.solve(cases[2:], HERE)
     deflections = answers["midspan_deflection"][:, -1]
-    for at, value in enumerate(values):
-        told = beam | {name: value}
-        impact, _ = with_values(il.paper_impact(), il.Discretisation(), told)
+    for row, value in enumerate(values):
+        parameters = beam | {name: value}
+        impact, _ = with_values(il.paper_impact(), il.Discretisation(), parameters)
         alone = solid.solve(impact, element_size=4e-3, duration=2e-5)
-        assert answers["energy_error"][at] == alone["energy_error"]
-        assert deflections[at] == pytest.approx(alone["midspan_deflection"][-1].item(), rel=1e-12)
+        assert answers["energy_error"][row] == alone["energy_error"]
+        assert deflections[row] == pytest.approx(alone["midspan_deflection"][-1].item(), rel=1e-12)
     assert deflections[0] != pytest.approx(deflections[1], rel=1e-6)
 
 
