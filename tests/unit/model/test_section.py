@@ -14,7 +14,6 @@ from impactlab.solver import RULES
 from impactlab.verification.solutions import bending
 
 COUNTS = [*range(2, 22), 32, 33, 48, 63, 64]
-STEEL = il.paper_impact().beam.material
 
 
 @pytest.mark.parametrize("rule", RULES)
