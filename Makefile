@@ -12,10 +12,11 @@
 #              that are current (a minute to half an hour each), or STORED='sobol_large witness'
 # make site    the same, then its pages, links and code blocks are tested
 # make release sdist and wheel in dist/, checked; nothing is uploaded or tagged
-# make bench   the kernel's cost, in times an elastic C stencil (needs gcc); a batch's, in times
-#              its kernels, and what a second thread brings; both schemes' cost and error; estimated cost;
+# make bench   the kernel's cost, in times an elastic C stencil (needs gcc); that of single runs and
+#              batches, in times their kernels; both schemes' cost and error; estimated cost;
 #              how often the intervals of Sobol indices hold: wants an idle machine
-# make scaling overhead, throughput and peak memory of a study: SCALING_ARGS=--full for a million runs
+# make scaling overhead, throughput, threads and peak memory of a study: SCALING_ARGS=--full for a
+#              million runs
 # make mutants the tests' own test: faults seeded into the kernels, and what catches each
 # make lint | coverage | constraints | clean
 # Settings: PYTHON=python3.12  CORES=4  STUDIES=velocity,sobol  PYTEST_ARGS="-k contact"
@@ -26,7 +27,7 @@ PYTEST_ARGS ?=
 SCALING_ARGS ?=
 STORED ?=
 UV ?= uv
-OLDEST_TESTS ?= jit solver model simulate study analysis
+OLDEST_TESTS ?= jit solver/test_jit.py model/test_quantities.py simulate study analysis
 VENV ?= .venv
 OLDEST ?= .venv-oldest
 
@@ -94,7 +95,8 @@ chaos: $(MADE)-dev
 kratos: $(MADE)-dev $(MADE)-kratos
 	$(IN_VENV) python -m pytest -m kratos $(PYTEST_ARGS)
 
-# Deprecations in old libraries are not errors.
+# What calls other libraries, and kernels against plain Python; other tests of kernels and of the model
+# know no library's version. Deprecations in old libraries are not errors.
 oldest: $(MADE_OLDEST)
 	PATH="$(abspath $(OLDEST)/bin):$$PATH" python -m pytest -n auto -W default --disable-warnings \
 	  -m 'not slow and not long and not chaos' $(addprefix tests/unit/,$(OLDEST_TESTS)) $(PYTEST_ARGS)
@@ -126,8 +128,7 @@ release: $(MADE)-dev
 
 bench: $(MADE)-dev
 	$(IN_VENV) python tests/benchmarks/kernel.py
-	$(IN_VENV) python tests/benchmarks/batch.py
-	$(IN_VENV) python tests/benchmarks/one_run.py
+	$(IN_VENV) python tests/benchmarks/calls.py
 	$(IN_VENV) python tests/benchmarks/schemes.py
 	$(IN_VENV) python tests/benchmarks/cost.py
 	$(IN_VENV) python tests/benchmarks/sobol_coverage.py

@@ -59,10 +59,3 @@ def run(deck: Path, threads: int = 1) -> Run:
     )
     printed = deck.with_suffix(".dat")
     return Run(done.returncode, done.stdout, printed.read_text() if printed.exists() else "")
-
-
-def version() -> str:
-    """Return the version of the installed CalculiX, such as 2.20."""
-    assert CCX is not None
-    words = subprocess.run([CCX, "-v"], capture_output=True, text=True, check=False).stdout
-    return words.split("Version")[1].split()[0]

@@ -24,11 +24,6 @@ def test_elastic_model_is_a_beam_that_does_not_yield(velocity, grid):
     expected = il.simulate(elastic(impact), grid, duration=2e-3)
     for name in (*HISTORIES, *RESPONSES):
         np.testing.assert_allclose(ours[name], expected[name], rtol=1e-12, err_msg=name)
-
-
-def test_it_makes_a_difference_where_the_beam_yields():
-    impact = il.paper_impact(20.0, "hertz")
-    yielding = il.simulate(impact, GRID, duration=2e-3)
-    ours = il.simulate(replace(impact, beam_model="elastic"), GRID, duration=2e-3)
-    assert yielding.plastic_dissipation.item() > 0
+    yielding = il.simulate(impact, grid, duration=2e-3)
+    assert (yielding.plastic_dissipation.item() > 0) == (velocity > 1.0)
     assert ours.plastic_dissipation.item() == 0

@@ -96,14 +96,11 @@ def test_layers_of_the_same_metal_are_a_rectangle(scheme, model):
     steel = il.paper_impact().beam.material
     row = steel.youngs_modulus, steel.yield_stress, steel.density
     grid = il.Discretisation(nodes=81, points=64, rule="layers", scheme=scheme)
-    ours = il.simulate(
-        laminate([(0.25, *row), (0.5, *row)], 12.0, beam_model=model), grid, duration=2e-3
+    impacts = (
+        laminate([(0.25, *row), (0.5, *row)], 12.0, beam_model=model),
+        replace(il.paper_impact(12.0, "hertz"), beam_model=model),
     )
-    plain = il.simulate(il.paper_impact(12.0, "hertz"), grid, duration=2e-3)
-    if model == "timoshenko":
-        plain = il.simulate(
-            replace(il.paper_impact(12.0, "hertz"), beam_model=model), grid, duration=2e-3
-        )
+    ours, plain = (il.simulate(impact, grid, duration=2e-3) for impact in impacts)
     for name in ("peak_force", "plastic_dissipation", "peak_plastic_strain", "impulse"):
         assert ours[name].item() == pytest.approx(plain[name].item(), rel=1e-6, nan_ok=True)
     strains = ours.equivalent_plastic_strain.values, plain.equivalent_plastic_strain.values
@@ -132,25 +129,19 @@ def test_a_struck_laminate_keeps_the_balance_of_energy(core, scheme):
 
 
 @pytest.mark.parametrize("core", CORES)
-def test_a_laminate_vibrates_and_collapses_as_its_layers_have_it(core):
-    """omega = pi^2 sqrt(EI/(rho A L^4)), F = 4 M_p/L."""
+def test_a_laminate_vibrates_as_its_layers_have_it(core):
+    """omega = pi^2 sqrt(EI/(rho A L^4)); it collapses under 4 M_p/L as every shape does."""
     impact = laminate(CORES[core], 0.3, gravity=0.0)
-    span = impact.beam.span
-    z, area, E, S, rho = strips(impact)
+    z, _, E, _, rho = strips(impact)
     light = replace(impact, sphere=replace(impact.sphere, radius=0.004), beam_model="elastic")
     run = il.simulate(light, GRID, duration=0.06, samples=6001)
     assert run.number_of_contacts == 1
     w, t = run.midspan_deflection.values[200:], run.time.values[200:]
-    omega = np.pi**2 * np.sqrt((E * z * z).sum() / rho.sum()) / span**2
+    omega = np.pi**2 * np.sqrt((E * z * z).sum() / rho.sum()) / impact.beam.span**2
     waves = [f(n * n * omega * t) for n in (1, 3, 5, 7, 9, 11, 13) for f in (np.cos, np.sin)]
     fit = np.stack(waves, axis=1)
     rest = w - fit @ np.linalg.lstsq(fit, w, rcond=None)[0]
     assert np.abs(rest).max() < 2e-2 * np.abs(w).max()
-    heavy = replace(impact, sphere=replace(impact.sphere, mass=1e5))
-    run = il.simulate(heavy, replace(GRID, nodes=41), duration="0.4 s")
-    M_p = 2 * (S * z).sum() * area
-    force = run.contact_force.values[-500:].mean()
-    assert force == pytest.approx(4 * M_p / span, rel=0.02)
 
 
 @pytest.mark.parametrize(

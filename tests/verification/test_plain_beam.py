@@ -20,7 +20,6 @@ from impactlab.model.parameters import with_values
 from impactlab.simulate import run_dataset
 from impactlab.solve import fibre_section
 from impactlab.solver import RULES, SCHEMES
-from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.stability import discretise
 from impactlab.variables import FLAGS, HISTORIES, STATUS_FLAGS
@@ -74,7 +73,7 @@ def drawn(random: np.random.Generator) -> dict[str, Any]:
 HALVES = {"leapfrog": (2, 30), "modal": (2, 12)}
 """Least and most spacings in the half beam."""
 MOST_STEPS = {"leapfrog": 6000, "modal": 4000}
-EXAMPLES = {"leapfrog": 240, "modal": 240}
+EXAMPLES = 150
 
 
 class Case(NamedTuple):
@@ -156,7 +155,7 @@ def test_same_answers_as_the_plain_solver(scheme):
     """Runs that bounce into chaos may differ: there no two codes agree, whoever is right."""
     seen: Counter[str] = Counter()
     random = np.random.default_rng(1)
-    for law in list(plain_beam.LAWS) * (EXAMPLES[scheme] // len(plain_beam.LAWS)):
+    for law in list(plain_beam.LAWS) * (EXAMPLES // len(plain_beam.LAWS)):
         values = drawn(random) | {"contact": law, "scheme": scheme}
         values["nodes"] = 2 * int(random.integers(*HALVES[scheme], endpoint=True)) + 1
         most = MOST_STEPS[scheme] if random.random() < 0.7 else 60
@@ -198,7 +197,3 @@ def test_larger_beams(values, happens, scheme, steps):
     run, dataset = case.plain(), case.kernels()
     assert happens <= {name for name, is_so in features(case, run, dataset).items() if is_so}
     assert_same(case, run, dataset)
-
-
-def test_the_plain_solver_numbers_its_laws_as_the_solver_does():
-    assert {name: LAWS.index(name) for name in plain_beam.LAWS} == plain_beam.LAWS

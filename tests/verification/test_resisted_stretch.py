@@ -10,20 +10,12 @@ import impactlab as il
 from impactlab.solver.outputs import SERIES
 from impactlab.verification.cases import elastic
 
-from .test_resisted_shear import BED, CANTILEVER, RAYLEIGH, SPRINGS, beam_of
+from .test_resisted_shear import BED, CANTILEVER, CLAMPED, EQUAL, RAYLEIGH, SPRINGS, beam_of
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning"),
     pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning"),
 ]
-
-CLAMPED = {"support_left": "clamped", "support_right": "clamped"}
-EQUAL = {
-    f"{kind}stiffness_{side}": value
-    for side in ("left", "right")
-    for kind, value in (("", 3e6), ("rotational_", 2e4))
-}
-EQUAL |= {"support_left": "elastic", "support_right": "elastic"}
 
 
 def stretching(velocity, **values):
@@ -31,52 +23,33 @@ def stretching(velocity, **values):
 
 
 @pytest.mark.parametrize(
-    ("values", "place"),
+    ("values", "place", "share"),
     [
-        (SPRINGS, 0.4),
-        (EQUAL | BED, 0.5),
-        (CANTILEVER | RAYLEIGH, 1.0),
-        (SPRINGS | BED | RAYLEIGH, 0.25),
-        (CLAMPED | RAYLEIGH, 0.5),
+        (SPRINGS, 0.4, 1e-4),
+        (EQUAL | BED, 0.5, 1e-4),
+        (CANTILEVER | RAYLEIGH, 1.0, 1e-4),
+        (SPRINGS | BED | RAYLEIGH, 0.25, 1e-4),
+        (CLAMPED | RAYLEIGH, 0.5, 1e-4),
+        ({}, 0.5, 3e-6),
+        (CLAMPED, 0.5, 3e-6),
+        ({"support_right": "roller"}, 0.5, 3e-6),
+        ({"support_left": "clamped", "support_right": "free"}, 0.25, 3e-6),
+        ({"support_left": "free"}, 0.0, 3e-6),
+        ({"support_left": "roller", "support_right": "clamped"}, 0.75, 3e-6),
     ],
-    ids=["springs", "half", "cantilever", "all", "clamped"],
 )
-def test_tiny_deflections_are_those_of_euler_and_bernoulli(values, place):
+def test_tiny_deflections_are_those_of_euler_and_bernoulli(values, place, share):
     impact = stretching(1e-3, place=place, **values)
-    grid = il.Discretisation(nodes=41, courant=0.2)  # whose steps are not the same: damping lags
+    grid = il.Discretisation(nodes=161)
+    if share == 1e-4:
+        grid = il.Discretisation(nodes=41, courant=0.2)  # steps are not the same: damping lags
     runs = [
         il.simulate(replace(impact, beam_model=model), grid, duration=2e-3, samples=401)
         for model in ("von_karman", "euler_bernoulli")
     ]
-    for name in ("contact_force", "midspan_deflection"):
+    for name in ("contact_force", "midspan_deflection", "sphere_displacement"):
         ours, expected = (run[name].values for run in runs)
-        assert np.abs(ours - expected).max() < 1e-4 * np.abs(expected).max(), name
-
-
-@pytest.mark.parametrize(
-    ("values", "place", "load"),
-    [
-        (SPRINGS, 0.375, "point"),
-        (EQUAL | BED, 0.5, "contact_patch"),
-        (CLAMPED | BED, 0.25, "point"),
-        ({"support_right": "roller"}, 0.5, "contact_patch"),
-    ],
-    ids=["springs", "half", "clamped", "roller"],
-)
-def test_the_balance_of_energy_counts_springs_foundation_and_damping(values, place, load):
-    """The error is no more than that of an undamped run, though damping takes much."""
-    runs = [
-        il.simulate(
-            stretching(20.0, place=place, load=load, **values, **damping),
-            il.Discretisation(nodes=65, points=9),
-            duration=4e-3,
-        )
-        for damping in ({}, {"mass_damping": 200.0, "stiffness_damping": 1e-5})
-    ]
-    assert [run.energy_error.item() < 5e-4 for run in runs] == [True, True]
-    assert runs[1].plastic_dissipation.item() > 0.0
-    lower = [np.abs(run.midspan_deflection[-400:]).max().item() for run in runs]
-    assert lower[1] < 0.95 * lower[0]
+        assert np.abs(ours - expected).max() < share * np.abs(expected).max(), name
 
 
 def least_energy(beam, force, terms=40):
@@ -117,20 +90,23 @@ def test_a_heavy_sphere_at_rest_bends_the_beam_as_in_statics(bed):
 
 
 @pytest.mark.parametrize(
-    ("values", "place", "velocity"),
+    ("model", "scheme", "values", "place", "velocity"),
     [
-        (CLAMPED, 0.5, 30.0),
-        ({}, 0.5, 20.0),
-        (SPRINGS | BED, 0.25, 20.0),
-        ({"support_left": "clamped", "support_right": "roller"}, 0.5, 20.0),
+        ("von_karman", "leapfrog", CLAMPED, 0.5, 30.0),
+        ("von_karman", "leapfrog", {}, 0.5, 20.0),
+        ("von_karman", "leapfrog", SPRINGS | BED, 0.25, 20.0),
+        ("von_karman", "leapfrog", CLAMPED | {"support_right": "roller"}, 0.5, 20.0),
+        ("euler_bernoulli", "leapfrog", {}, 0.5, 20.0),
+        ("euler_bernoulli", "modal", {}, 0.5, 20.0),
     ],
-    ids=["clamped", "pinned", "springs", "roller"],
 )
-def test_a_damped_beam_comes_to_rest_by_itself(values, place, velocity):
+def test_a_damped_beam_comes_to_rest_by_itself(model, scheme, values, place, velocity):
     """Alike what static equilibrium leaves, with axial force and fibres that have yielded."""
-    impact = stretching(velocity, place=place, mass_damping=600.0, **values)
-    impact = replace(impact, gravity=0.0, strikes=3, contact="finite_element")
-    grid = il.Discretisation(nodes=41, points=9)
+    impact = beam_of(velocity, model, 0.035, place, mass_damping=600.0, **values)
+    stretches = model == "von_karman"
+    law = "finite_element" if stretches else "stronge"
+    impact = replace(impact, gravity=0.0, strikes=3, contact=law)
+    grid = il.Discretisation(nodes=33 if scheme == "modal" else 41, points=9, scheme=scheme)
     still, run = (
         il.simulate(case, grid, duration="12 ms", samples=2)
         for case in (impact, replace(impact, strike_interval="90 ms"))
@@ -138,8 +114,8 @@ def test_a_damped_beam_comes_to_rest_by_itself(values, place, velocity):
     assert np.abs(still.residual_deflection_over_strikes).min() > 1e-4
     for name in SERIES:
         ours, expected = (of[f"{name}_over_strikes"].values for of in (still, run))
-        assert ours == pytest.approx(expected, rel=1e-5), name
-    assert still.energy_error.item() < 2e-3
+        assert ours == pytest.approx(expected, rel=1e-5 if stretches else 1e-6), name
+    assert still.energy_error.item() < 2e-3 if stretches else run.energy_error.item() < 0.01
 
 
 def test_stretching_slows_the_growth_of_a_clamped_beams_deflection():

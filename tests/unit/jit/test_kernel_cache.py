@@ -85,7 +85,7 @@ def call(tmp_path):
 
 
 def printed(process):
-    out, errors = process.communicate(timeout=120)
+    out, errors = process.communicate(timeout=600)
     assert process.returncode == 0, errors
     return out.split(), errors
 
@@ -97,13 +97,9 @@ def test_processes_that_compile_at_once_leave_a_sound_cache(call):
     assert printed(call())[0] == ["6.0", "1"]
 
 
-def test_a_second_checkout_finds_the_kernels_of_the_first(call, tmp_path):
+def test_another_checkout_finds_the_kernels_and_another_processor_compiles_its_own(call, tmp_path):
     assert printed(call())[0] == ["6.0", "0"]
     assert printed(call(checkout(tmp_path / "elsewhere")))[0] == ["6.0", "1"]
-
-
-def test_another_processor_compiles_its_own(call):
-    assert printed(call())[0] == ["6.0", "0"]
     assert printed(call(NUMBA_CPU_NAME="generic", NUMBA_CPU_FEATURES=""))[0] == ["6.0", "0"]
     assert printed(call())[0] == ["6.0", "1"]
 
@@ -116,10 +112,9 @@ def test_functions_made_by_one_function_are_not_confused(call, tmp_path):
 
 
 def test_without_a_folder_kernels_run_and_leave_nothing_behind(call, tmp_path):
-    for _ in range(2):
-        out, errors = printed(call(NUMBA_CACHE_DIR="/dev/null"))
-        assert out == ["6.0", "0"]
-        assert "compiled kernels cannot be kept in /dev/null/kernels-" in errors
+    out, errors = printed(call(NUMBA_CACHE_DIR="/dev/null"))
+    assert out == ["6.0", "0"]
+    assert "compiled kernels cannot be kept in /dev/null/kernels-" in errors
     assert not list(tmp_path.rglob("*.nbi"))
     assert not list(tmp_path.rglob("*.kernel"))
 
@@ -187,46 +182,43 @@ import impactlab as il
 from impactlab.simulate import run_dataset
 from impactlab.solver.kernels import kernel_of
 grid = il.Discretisation(nodes=21, points=5)
-run = run_dataset(il.paper_impact(12.0), grid, duration=1e-3)
+run = run_dataset(il.paper_impact(20.0), grid, duration=1e-3)
+assert run.plastic_dissipation > 0
 bits = b"".join(run[name].values.tobytes() for name in sorted(run.variables))
 print(hashlib.sha256(bits).hexdigest(), len(kernel_of(0, 0).stats.cache_hits))
 """
 
 
 @pytest.mark.long
-def test_every_process_runs_the_same_machine_code(tmp_path):
-    """The first, several that start at once, a second checkout, and one with damaged kernels."""
+def test_every_process_has_the_same_bits(tmp_path):
+    """The first, one that starts at once, a second checkout, and one with numba's public options.
+
+    Beam and contact yield. The last compiles for itself; of the others one does.
+    """
     package = Path(jit.__file__).parents[1]
     roots = [package.parent, tmp_path / "checkout"]
     ignored = shutil.ignore_patterns("__pycache__")
     shutil.copytree(package, roots[1] / package.name, ignore=ignored)
 
-    def start(root):
+    def start(root, **settings):
         env = os.environ | {"PYTHONPATH": str(root), "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
         return subprocess.Popen(
             [sys.executable, "-c", SOLVE],
             cwd=tmp_path,
-            env=env,
+            env=env | settings,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
         )
 
     started = [start(root) for root in roots]
-    out = [process.communicate()[0].split() for process in started]
+    out = [printed(process)[0] for process in started]
     (file,) = (tmp_path / "cache").rglob("*.kernels.euler_bernoulli-*.kernel")
     compiled_once = file.stat().st_mtime_ns
-    out.append(start(roots[1]).communicate()[0].split())
+    out.append(printed(start(roots[1]))[0])
     assert file.stat().st_mtime_ns == compiled_once
-    content = file.read_bytes()
-    file.write_bytes(content[:-200] + bytes([content[-200] ^ 4]) + content[-199:])
-    again, errors = start(roots[0]).communicate()
-    damage, compiling = errors.splitlines()
-    assert "damaged compiled kernels" in damage
-    assert "compiling kernels, once" in compiling
-    assert str(file.parent) in errors
-    out.append(again.split())
-    assert out == [[out[0][0], "1"]] * 4
+    assert out == [[out[0][0], "1"]] * 3
+    assert printed(start(roots[0], IMPACTLAB_PLAIN_NUMBA="1"))[0] == [out[0][0], "0"]
 
 
 def test_kernels_of_one_call_are_compiled_together(tmp_path, monkeypatch):

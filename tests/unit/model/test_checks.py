@@ -10,47 +10,26 @@ import impactlab as il
 from impactlab.model.checks import Column, column, integer, number, one_of, positive
 
 NAN, INFINITE = float("nan"), float("inf")
-NOT_NUMBERS = [None, "1", True, NAN, INFINITE, -INFINITE, [1.0], 1j, np.array([1.0])]
 
 
-@pytest.mark.parametrize("value", NOT_NUMBERS, ids=repr)
 @pytest.mark.parametrize("check", [number, positive])
-def test_what_is_not_a_finite_number_is_refused(check, value):
-    with pytest.raises(ValueError, match=r"^Owner\.field = .*: must be a finite number$"):
-        check("Owner", "field", value)
-
-
-@pytest.mark.parametrize("value", [2, 2.0, np.float32(2), np.int64(2), Fraction(4, 2)], ids=repr)
-@pytest.mark.parametrize("check", [number, positive])
-def test_numbers_of_any_kind_become_floats(check, value):
-    result = check("Owner", "field", value)
-    assert result == 2.0
-    assert type(result) is float
-
-
-def test_zero_is_not_negative_and_not_positive():
-    assert replace(il.paper_impact(), gravity=0).gravity == 0
+def test_numbers_of_any_kind_become_floats_and_others_are_refused(check):
+    for value in (2, 2.0, np.float32(2), np.int64(2), Fraction(4, 2)):
+        assert repr(check("Owner", "field", value)) == "2.0"
+    for value in (None, "1", True, NAN, INFINITE, -INFINITE, [1.0], 1j, np.array([1.0])):
+        with pytest.raises(ValueError, match=r"^Owner\.field = .*: must be a finite number$"):
+            check("Owner", "field", value)
+    assert number("Owner", "field", 0) == 0.0
     with pytest.raises(ValueError, match=r"^Owner\.field = 0: must be above zero$"):
         positive("Owner", "field", 0)
-    with pytest.raises(ValueError, match=r"^Impact\.gravity = -1\.0: must not be negative$"):
-        replace(il.paper_impact(), gravity=-1)
-    # a truth is no count
-    with pytest.raises(ValueError, match=r"^Owner\.field = True: must be a whole number"):
-        integer("Owner", "field", True, 1)
 
 
-@pytest.mark.parametrize("value", [5, 5.0, np.int64(5), np.float64(5)], ids=repr)
-def test_whole_numbers_become_ints(value):
-    result = integer("Owner", "field", value, 5)
-    assert result == 5
-    assert type(result) is int
-
-
-@pytest.mark.parametrize("value", [4, 5.5, "5", None, INFINITE, NAN], ids=repr)
-def test_other_numbers_are_refused(value):
-    message = r"^Owner\.field = .*: must be a whole number of at least 5$"
-    with pytest.raises(ValueError, match=message):
-        integer("Owner", "field", value, 5)
+def test_whole_numbers_become_ints_and_others_are_refused():
+    for value in (5, 5.0, np.int64(5), np.float64(5)):
+        assert repr(integer("Owner", "field", value, 5)) == "5"
+    for value in (4, 5.5, "5", None, True, INFINITE, NAN):
+        with pytest.raises(ValueError, match=r"^Owner\.field = .*: must be a whole number"):
+            integer("Owner", "field", value, 5)
 
 
 def test_a_name_is_one_of_the_choices():
@@ -84,32 +63,14 @@ def test_numbers_become_floats(values):
     assert made.tolist() == [float(value) for value in values]
 
 
-@pytest.mark.parametrize(
-    "values", [["a", "bc"], np.array(["a", "bc"]), np.array(["a", "bc"], dtype=object)], ids=repr
-)
-def test_words_stay_words(values):
-    assert column(values).tolist() == ["a", "bc"]
-
-
-@pytest.mark.parametrize(
-    "values",
-    [
-        [True, 1.0],
-        [np.True_, 1.0],
-        np.array([True, False]),
-        np.array([True, 1.0], dtype=object),
-        [1.0, None],
-        [1.0, [2.0]],
-        [[1.0], [2.0]],
-        [1j],
-        [Fraction(1, 2)],
-        [10**400],
-    ],
-    ids=repr,
-)
-def test_anything_else_is_no_column(values):
-    with pytest.raises(ValueError, match=r"."):
-        column(values)
+def test_words_stay_words_and_anything_else_is_no_column():
+    for words in (["a", "bc"], np.array(["a", "bc"]), np.array(["a", "bc"], dtype=object)):
+        assert column(words).tolist() == ["a", "bc"]
+    truths = [[True, 1.0], [np.True_, 1.0], np.array([True, False]), np.array([True, 1.0], object)]
+    others = [[1.0, None], [1.0, [2.0]], [[1.0], [2.0]], [1j], [Fraction(1, 2)], [10**400]]
+    for values in (*truths, *others):
+        with pytest.raises(ValueError, match=r"."):
+            column(values)
 
 
 def test_columns_in_fields_are_checked_run_by_run_and_other_arrays_refused():

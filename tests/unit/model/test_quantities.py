@@ -53,9 +53,9 @@ def test_what_is_written_becomes_exactly_this_si_number(written, units, number):
     assert si(written, units) == number
 
 
-@pytest.mark.parametrize("tenths", range(1, 1000, 7))
-def test_units_leave_no_trace_of_binary_rounding(tenths):
-    assert si(f"{tenths / 10} mm", "m") == float(f"{tenths}e-4")
+def test_units_leave_no_trace_of_binary_rounding():
+    for tenths in range(1, 1000, 7):
+        assert si(f"{tenths / 10} mm", "m") == float(f"{tenths}e-4")
 
 
 @pytest.mark.parametrize("target", [units for units in KINDS if units != "1"])
@@ -64,7 +64,7 @@ def test_known_units_are_what_pint_says(target):
     compared = 0
     names = [*UNITS, *(f"{one}/{other}" for one, other in product(UNITS, UNITS)), "g/cm3", "m/s2"]
     names += ["s-1", "N m", "kN m"]
-    for name, number in product(names, ("1", "27.8", "-.3e-7", "123456789.123456789")):
+    for name, number in product(names, ("-27.8e-7", "123456789.123456789")):
         try:
             expected = quantities._by_pint(Decimal(number), name, target)
         except ValueError as error:
@@ -73,7 +73,7 @@ def test_known_units_are_what_pint_says(target):
         else:
             assert si(f"{number} {name}", target) == expected, name
             compared += 1
-    assert compared >= 4
+    assert compared >= 2
 
 
 def test_units_of_most_studies_do_without_pint():

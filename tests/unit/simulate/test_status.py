@@ -10,7 +10,6 @@ from impactlab.model.parameters import with_values
 from impactlab.solver.contact import finite_element
 from impactlab.variables import (
     FAILURES,
-    FLAGS,
     OUTSIDE_DATA,
     RESPONSES,
     STATUS_FLAGS,
@@ -162,19 +161,3 @@ def test_flags_come_off_as_the_run_grows_longer():
     after = il.simulate(impact, grid, duration=1.02 * end)
     assert not {"first_contact_unfinished", "in_contact_at_end"} & flags(after)
     assert after.contact_duration.item() == pytest.approx(end, rel=1e-2)
-
-
-def diverged(points):
-    """A contact so stiff beside so light a sphere that one step overshoots it."""
-    values = {"contact": "hertz", "velocity": 10.0, "sphere_mass": 0.05}
-    values |= {"nodes": 5, "points": points, "courant": 1.0}
-    impact, grid = with_values(il.paper_impact(), il.Discretisation(), values)
-    return il.simulate(impact, grid, duration=1e-3)
-
-
-@pytest.mark.parametrize("points", [4, 5], ids=["", "a fibre on the axis"])
-def test_a_diverged_run_gives_no_number(points):
-    run = diverged(points)
-    assert flags(run) == {"diverged"}
-    for name in set(run.data_vars) - {*FLAGS}:
-        assert run[name].isnull().all(), name

@@ -84,16 +84,12 @@ def run(velocity, duration=None, *, grid=None, **changes):
     impact = replace(il.paper_impact(velocity, "hunt_crossley"), gravity=0.0, **changes)
     duration = duration or 3.0 * hertz.contact_duration(*hertz.arguments(impact))
     grid = grid or il.Discretisation(nodes=11, points=3)
-    return impact, il.simulate(impact, grid, duration=duration, samples=4001)
+    return il.simulate(impact, grid, duration=duration, samples=4001)
 
 
-@pytest.mark.parametrize("velocity", [0.3, 3.0, 20.0])
-def test_the_largest_force_comes_before_the_largest_indentation(velocity):
-    impact, dataset = run(velocity, beam_model="rigid")
-    mass, stiffness = impact.sphere.total_mass, hertz.contact_stiffness(impact)
-    exact = hertz.HuntCrossleyImpact(mass, velocity, stiffness)
-    assert dataset.peak_force.item() == pytest.approx(exact.peak_force, rel=2e-6)
-    assert dataset.restitution.item() == pytest.approx(exact.restitution, rel=2e-6)
+def test_the_largest_force_comes_before_the_largest_indentation():
+    """Their sizes are a check of the verification."""
+    dataset = run(3.0, beam_model="rigid")
     peak = dataset.time.values[np.argmax(dataset.contact_force.values)]
     deepest = dataset.time.values[np.argmax(dataset.indentation.values)]
     step = dataset.time.values[1]
@@ -115,6 +111,6 @@ def test_energy_at_the_largest_time_step(model, scheme, load, compliance, veloci
     """With damping the step without it would be unstable at 20 m/s."""
     grid = il.Discretisation(nodes=201, points=9, scheme=scheme, courant=1.0)
     choices = {"beam_model": model, "load": load, "contact_compliance": compliance}
-    _, dataset = run(velocity, 2e-3, grid=grid, **choices)
+    dataset = run(velocity, 2e-3, grid=grid, **choices)
     assert dataset.energy_error.item() < 2e-3  # NaN where it diverges
     assert dataset.contact_force.values.min() == 0.0

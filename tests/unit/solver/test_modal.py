@@ -1,11 +1,11 @@
-"""The modal scheme: its step against closed forms, its list of sections, and its stability."""
+"""The modal scheme: its step against closed forms, its list of sections, and balance."""
 
 import numba
 import numpy as np
 import pytest
 
 import impactlab as il
-from impactlab.simulate import simulate, simulate_many
+from impactlab.simulate import simulate_many
 from impactlab.solve import fibre_section
 from impactlab.solver.beam import make_grid
 from impactlab.solver.contact.history import make_pair
@@ -13,12 +13,9 @@ from impactlab.solver.fibre_plasticity import make_plastic_state, plastic_energy
 from impactlab.solver.modal import bend_sections
 from impactlab.solver.modes import deflect, make_modes, modal_energy, mode_curvature, move_modes
 from impactlab.solver.section import FAR
-from impactlab.solver.stability import discretise, largest_time_step, stiffest_contact
+from impactlab.solver.stability import discretise
 from impactlab.variables import STATUS_FLAGS
-from impactlab.verification.cases import elastic
-from impactlab.verification.modal_series import error
 from impactlab.verification.schemes import drawn
-from impactlab.verification.solutions.modal import solve
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
@@ -158,41 +155,6 @@ def test_any_bending_however_sudden_is_found(make_case):
     assert plastic_energy(plastic, section, grid)[1] > 0
 
 
-LIGHT = {"contact": "hertz", "sphere_mass": 1e-3, "velocity": 30.0}
-LIGHT |= {"beam_depth": 0.002, "beam_width": 0.001}
-
-
-@pytest.mark.parametrize("values", [{}, LIGHT], ids=["wave", "contact"])
-@pytest.mark.parametrize("nodes", [5, 17, 61])
-def test_a_step_with_any_sections_yielding_is_stable(make_case, values, nodes):
-    """At the largest time step all eigenvalues of the step lie on the unit circle.
-
-    The contact is a spring; sections keep some or none of their stiffness.
-    """
-    case = make_case(scheme="modal", nodes=nodes, **values)
-    pair, section, dx = make_pair(case), fibre_section(case), case.beam_span / (nodes - 1)
-    dt, k_c = largest_time_step(case, pair, section.stiffness, dx), stiffest_contact(case, pair)
-    wave = dx * np.sqrt(case.beam_density / case.beam_youngs_modulus)
-    assert (dt < 0.99 * wave) == bool(values)
-    mu = case.beam_density * case.beam_width * case.beam_depth
-    n = nodes // 2
-    grid, random = make_grid(2 * n + 1, dx, dt, mu, section.stiffness), np.random.default_rng(1)
-    modes = make_modes(grid, section.stiffness, section.yield_curvature)
-    bent, lengths = modes.bent[2 : grid.mid + 1], np.full(n, 2 * dx)
-    lengths[-1] = dx
-    for share in (0.0, 0.3, 1.0):
-        kept = np.where(random.random(n) < share, 0.0, 1.0) * section.stiffness
-        stiffness = np.zeros((n + 2, n + 2))
-        stiffness[:-1, :-1] = bent.T @ (bent * (kept * lengths)[:, np.newaxis])
-        stiffness[n, n] = modes.D[n] / modes.push[n]
-        touch = np.append(np.ones(n + 1), -1.0)
-        stiffness += k_c * np.outer(touch, touch)
-        root = np.sqrt(np.append(modes.push, dt**2 / case.sphere_mass))
-        squares = np.linalg.eigvalsh(root[:, np.newaxis] * stiffness * root)
-        assert squares.min() > -1e-9
-        assert squares.max() < 4 * (1 - 1e-9)
-
-
 @JIT_ONLY
 @pytest.mark.filterwarnings("ignore::impactlab.ImplausibleWarning")
 def test_random_cases_stay_in_balance_at_the_largest_time_step():
@@ -204,25 +166,3 @@ def test_random_cases_stay_in_balance_at_the_largest_time_step():
     assert not (runs.status.values & STATUS_FLAGS["diverged"][0]).any()
     assert np.nanmax(runs.energy_error.where(runs.nodes > 20)) < 1e-2
     assert runs.energy_error.max() < 0.1
-
-
-@JIT_ONLY
-def test_order_of_convergence_in_an_elastic_impact():
-    """Second order of force and deflection, that of dt; first of the curvature under the load."""
-    impact = elastic(il.paper_impact(0.99))
-    series = solve(impact, 2e-3)
-    coarse, fine = (
-        simulate(
-            impact,
-            il.Discretisation(nodes=nodes, points=3, scheme="modal"),
-            duration=2e-3,
-            samples=401,
-        )
-        for nodes in (11, 41)
-    )
-    orders = {
-        name: np.log2(error(name, series, coarse) / error(name, series, fine)) / 2
-        for name in ("contact_force", "midspan_deflection", "midspan_curvature")
-    }
-    assert list(orders.values()) == pytest.approx([2.0, 2.0, 1.0], abs=0.25), orders
-    assert error("contact_force", series, fine) < 2e-4

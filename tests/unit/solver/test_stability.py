@@ -71,7 +71,7 @@ def stiffness_of(law, deepest):
 
     Returns it as a function of the depth, which is at most `deepest`.
     """
-    depths = np.linspace(1e-3, 1, 8000) * deepest
+    depths = np.linspace(1e-3, 1, 2500) * deepest
     forces = np.array([law.loading_force(depth) for depth in depths])
     slopes = np.diff(forces) / np.diff(depths)
     jumps = [np.searchsorted(depths, joint) - 1 for joint in joints(*law.pair) if joint < deepest]

@@ -1,7 +1,6 @@
 """CalculiX reads the decks, and finds Hertz's impact with one."""
 
 import re
-import signal
 from dataclasses import replace
 
 import calculix
@@ -94,16 +93,6 @@ def test_plastic_deck_is_read(tmp_path, impact, mesh):
 
 @calculix.needed
 @pytest.mark.long
-def test_plasticity_crashes_calculix_as_the_deck_says(tmp_path, impact, mesh):
-    if calculix.version() != "2.20":
-        pytest.skip("said of CalculiX 2.20 alone")
-    path = small_deck(tmp_path, impact, mesh, plastic=True)
-    assert "CalculiX 2.20 crashes" in path.read_text()
-    assert calculix.run(path).code == -signal.SIGSEGV
-
-
-@calculix.needed
-@pytest.mark.long
 def test_elastic_impact_on_a_large_block_is_hertzs(tmp_path):
     """At 1 mm, with less than two elements in the contact radius.
 
@@ -137,24 +126,20 @@ def test_elastic_impact_on_a_large_block_is_hertzs(tmp_path):
     assert impulse == pytest.approx(2.0 * mass * 0.5, rel=0.01)  # nothing is lost
 
 
-HELD = {
-    "clamped": {"support_left": "clamped", "support_right": "free"},
-    "elastic": {
-        **{"support_left": "elastic", "support_right": "clamped", "foundation_stiffness": 1e9},
-        **{"stiffness_left": 2e7, "rotational_stiffness_left": 2e4},
-    },
+ENDS = {
+    **{"support_left": "elastic", "support_right": "clamped", "foundation_stiffness": 1e9},
+    **{"stiffness_left": 2e7, "rotational_stiffness_left": 2e4},
 }
 
 
 @calculix.needed
 @pytest.mark.long
-@pytest.mark.parametrize("ends", HELD.values(), ids=HELD.keys())
-def test_a_half_answers_as_our_own_3d_model(tmp_path, ends):
+def test_a_half_answers_as_our_own_3d_model(tmp_path):
     """Elastic, of a beam so short that its ends matter before the contact is over."""
     paper = paper_impact()
     beam, sphere = (
         replace(body, material=replace(body.material, yield_stress=50e9))
-        for body in (replace(paper.beam, span=0.2, **ends), paper.sphere)
+        for body in (replace(paper.beam, span=0.2, **ENDS), paper.sphere)
     )
     this = replace(paper, beam=beam, sphere=sphere, strike_position=0.4, gravity=0.0)
     mesh = impact_mesh(this, element_size=1.5e-3, ratio=2.0, coarsest=14e-3, patch=3e-3)

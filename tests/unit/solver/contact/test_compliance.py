@@ -14,7 +14,6 @@ from impactlab.model.contact_compliance import (
     contact_compliance,
     crowding,
 )
-from impactlab.solver import outputs
 from impactlab.solver.contact import LAWS, kogut_etsion, prestress
 from impactlab.solver.contact.history import CONTACT, Pair, energies, force, load_to
 from impactlab.solver.contact.stronge import yield_indentation
@@ -149,20 +148,6 @@ def test_at_a_jump_a_negative_spring_snaps_and_creates_no_energy():
     assert work == pytest.approx(grown * contact.F_m, abs=0.05 * corner)
 
 
-@pytest.mark.parametrize(("law", "velocity"), [("kogut_etsion", 0.02166925), ("mjg", 0.1582083)])
-def test_runs_that_met_a_jump_in_one_step_succeed(law, velocity):
-    beam = replace(TIMOSHENKO.beam, depth=0.014)
-    velocities = (velocity * (1.0 + 1e-8 * np.arange(20))).tolist()
-    runs = il.simulate_many(
-        replace(TIMOSHENKO, beam=beam, contact=law),
-        il.Discretisation(nodes=101),
-        duration="0.6 ms",
-        varied={"velocity": velocities},
-    )
-    assert not (runs.status & outputs.DIVERGED).any()
-    assert np.ptp(runs.peak_force.values) < 1e-5 * runs.peak_force[0]
-
-
 def test_without_poissons_effect_bending_adds_nothing():
     """Saint-Venant: a bent section keeps its shape. Timoshenko's shear with k = 5/6 is exact."""
     steel = replace(TIMOSHENKO.beam.material, poissons_ratio=0.0)
@@ -273,32 +258,3 @@ def test_neither_a_wide_beam_nor_a_half_space_has_sides():
         narrow = replace(TIMOSHENKO, beam=replace(TIMOSHENKO.beam, width=width))
         assert crowding(narrow) == pytest.approx(c / width**2)
         assert crowding(replace(narrow, contact_compliance="half_space")) == 0.0
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"beam_model": "euler_bernoulli"}, "beam_model: timoshenko"),
-        ({"contact_compliance": "strip", "beam_depth": 0.07}, "as wide as deep at least"),
-        ({"beam_width": 0.15}, "depth over width from 0.2 to 4"),
-        ({"beam_span": 0.1}, "span of 3 depths and widths"),
-    ],
-)
-def test_refusals(change, words):
-    values = {"beam_model": "timoshenko", "contact_compliance": "beam"} | change
-    with pytest.raises(ValueError, match=words):
-        il.simulate_many(
-            il.paper_impact(), duration=1e-6, varied={key: [each] for key, each in values.items()}
-        )
-
-
-def test_a_factor_of_a_study_as_any_other():
-    both = il.simulate_many(
-        replace(il.paper_impact(contact="hertz"), beam_model="timoshenko"),
-        il.Discretisation(nodes=41),
-        duration="0.3 ms",
-        varied={"contact_compliance": ["half_space", "beam"]},
-    )
-    assert both.peak_force[1] / both.peak_force[0] == pytest.approx(1.04, abs=0.01)
-    assert both.contact_duration[1] / both.contact_duration[0] == pytest.approx(0.97, abs=0.01)
-    assert both.energy_error.max() < 1e-3

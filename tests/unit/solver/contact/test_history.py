@@ -12,7 +12,6 @@ from impactlab.solver.contact.history import (
     energies,
     force,
     load,
-    loading_work,
     make_pair,
 )
 from impactlab.solver.contact.switch import curve
@@ -81,20 +80,6 @@ def test_unloading_follows_the_exponent_of_the_curve(law, exponent):
     over = 0.5 * (DEEP - contact.delta_r)
     expected = contact.K * over**exponent
     assert force(contact, pair, contact.delta_r + over) == pytest.approx(expected, rel=1e-14)
-
-
-WITHIN = [(0.0, 1.0), (1.0, 1.3), (3.0, 4.0), (60.0, 75.0), (90.0, 300.0)]
-ACROSS = [(0.0, 30.0), (0.5, 2.0), (50.0, 120.0)]
-"""Indentations of first yield: from beginning to end of a regime, and beyond its limit."""
-
-
-@pytest.mark.parametrize(
-    ("ends", "accuracy"), [*((ends, 1e-9) for ends in WITHIN), *((ends, 1e-4) for ends in ACROSS)]
-)
-def test_loading_work_is_the_closed_form(ends, accuracy):
-    start, stop = np.array(ends) * STRONGE.yield_indentation
-    expected = STRONGE.loading_work(stop) - STRONGE.loading_work(start)
-    assert loading_work(pair_of("stronge"), start, stop) == pytest.approx(expected, rel=accuracy)
 
 
 @every_law

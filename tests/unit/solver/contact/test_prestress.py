@@ -84,9 +84,9 @@ def test_force_under_an_even_stress_is_that_of_finite_elements(stress, span):
 def test_stress_that_changes_creates_no_energy(compliance):
     """Loading and reloading while the bending swings: work is stored or dissipated."""
     approach = np.concatenate(
-        [np.linspace(0.0, 60.0, 1600), np.linspace(60.0, 50.0, 400), np.linspace(50.0, 80.0, 1200)]
+        [np.linspace(0.0, 60.0, 800), np.linspace(60.0, 50.0, 200), np.linspace(50.0, 80.0, 600)]
     )
-    approach = 1e-6 * np.concatenate([approach, np.full(400, 80.0), np.linspace(80.0, 0.0, 1600)])
+    approach = 1e-6 * np.concatenate([approach, np.full(200, 80.0), np.linspace(80.0, 0.0, 800)])
     bending = 0.8 * S_y * np.sin(np.linspace(0.0, 30.0, approach.size))
     contact, forces, dissipated = untouched(), [], []
     bodies = pair(compliance=compliance)
