@@ -14,6 +14,7 @@ from impactlab.model.contact_compliance import (
     contact_compliance,
     crowding,
 )
+from impactlab.solver import outputs
 from impactlab.solver.contact import LAWS, kogut_etsion, prestress
 from impactlab.solver.contact.history import CONTACT, Pair, energies, force, load_to
 from impactlab.solver.contact.stronge import yield_indentation
@@ -146,6 +147,20 @@ def test_at_a_jump_a_negative_spring_snaps_and_creates_no_energy():
     work = sum(energies(contact, bodies, contact.approach_m)) - before
     corner = -bodies.compliance * (F_above - F) * (contact.F_m - F)
     assert work == pytest.approx(grown * contact.F_m, abs=0.05 * corner)
+
+
+@pytest.mark.parametrize(("law", "velocity"), [("kogut_etsion", 0.02166925), ("mjg", 0.1582083)])
+def test_runs_that_met_a_jump_in_one_step_succeed(law, velocity):
+    beam = replace(TIMOSHENKO.beam, depth=0.014)
+    velocities = (velocity * (1.0 + 1e-8 * np.arange(20))).tolist()
+    runs = il.simulate_many(
+        replace(TIMOSHENKO, beam=beam, contact=law),
+        il.Discretisation(nodes=101),
+        duration="0.6 ms",
+        varied={"velocity": velocities},
+    )
+    assert not (runs.status & outputs.DIVERGED).any()
+    assert np.ptp(runs.peak_force.values) < 1e-5 * runs.peak_force[0]
 
 
 def test_without_poissons_effect_bending_adds_nothing():
