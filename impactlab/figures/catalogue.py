@@ -33,6 +33,7 @@ ANSWERS = (
     single_runs.plastic_strain_depth,
     grids.shear,
     grids.parameter_effects,
+    grids.compared_values,
     convergence.nodes_convergence,
     convergence.time_step_convergence,
     convergence.points_convergence,
@@ -42,6 +43,7 @@ ANSWERS = (
 )
 OF_FUNCTIONS = (
     grids.parameter_effects,
+    grids.compared_values,
     distributions.response_distributions,
     distributions.cumulative_distributions,
 )
@@ -69,6 +71,7 @@ CATALOGUE = {figure.name: figure for figure in (*ANSWERS, *INDICES)}
 _LEADING = (
     *(family.figure for family in FAMILIES),
     "parameter_effects",
+    "compared_values",
     "nodes_convergence",
     "element_size_convergence",
     "time_step_convergence",

@@ -7,11 +7,14 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.transforms import offset_copy
 
 from impactlab.figures import access, curves, labels, record, scales, style
-from impactlab.figures.access import physical, responses, usable
+from impactlab.figures.access import physical, responses, usable, varied
 from impactlab.figures.curves import Plan, plan
+from impactlab.figures.data import name_places
 from impactlab.figures.labels import Display, display
+from impactlab.model.parameters import REFINEMENTS
 from impactlab.types import Floats
 from impactlab.variables import MARKS
 
@@ -19,6 +22,8 @@ _PEAK, _DURATION, _RESTITUTION = "peak_force", "contact_duration", "restitution"
 _FORCE, _INDENTATION, _DENT = "contact_force", "indentation", "permanent_indentation"
 _FEWEST = 3  # smallest number of values, of a parameter or of contact laws, for a figure
 _OUTSIDE = MARKS["outside_contact_law"][0]
+_LEAST_RANGE = 0.05  # of compared values over the largest one, below which the axis is widened
+_BESIDE = 1.7  # between the markers of a row, points
 _THRESHOLD = 1.0  # changes by shear that matter, %
 _WIDE = 10.0  # largest change in % up to which an axis is linear
 _WITHOUT, _WITH = "euler_bernoulli", "timoshenko"
@@ -229,6 +234,60 @@ def parameter_effects(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     for name, ax in axes.items():
         ax.set_title(response_curves(ax, runs, analysis, name, along, selected), loc="left")
     return selected.finish(figure, parameter_axis(along))
+
+
+def _compared(runs: xr.Dataset) -> str | None:
+    """Return the first parameter of several values, words first, where none has a curve."""
+    if access.is_sample(runs) or not responses(runs) or _along(runs) is not None:
+        return None
+    several = [dim for dim in varied(runs) if runs.sizes.get(dim, 0) > 1 and dim not in REFINEMENTS]
+    return min(several, key=lambda dim: runs[dim].dtype.kind in "if", default=None)
+
+
+def _plan_compared(runs: xr.Dataset) -> Plan:
+    return plan(runs, responses(runs)[0], along=[str(_compared(runs))])
+
+
+@record.figure(
+    "Responses side by side",
+    "",
+    lambda runs, analysis: _compared(runs) is not None,
+    lambda runs, analysis: (
+        f"Responses by {labels.parameter(runs[_compared(runs)])}.",
+        _plan_compared(runs).note(runs),
+        access.missing_note(runs, responses(runs)),
+    ),
+)
+def compared_values(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
+    """Draw a panel per response, a row per word or number, colours by the second parameter."""
+    compared, selected = runs[_compared(runs)], _plan_compared(runs)
+    rows = np.arange(compared.size)
+    figure, axes = style.response_panels(responses(runs), height=16.0 + 4.0 * rows.size)
+    for name, ax in axes.items():
+        values, label = style.in_display_units(runs, name)
+        for number, curve in enumerate(selected.curves):
+            if curves.add(ax, values.isel(curve.where).values, rows, curve):
+                ax.lines[-1].set_linestyle("none")  # nothing lies between
+                down = (number - 0.5 * (len(selected.curves) - 1)) * _BESIDE
+                ax.lines[-1].set_transform(offset_copy(ax.transData, figure, 0.0, -down, "points"))
+        name_places(ax, "y", [labels.brief(compared, row) for row in rows])
+        ax.set_ylim(rows.size - 0.5, -0.5)
+        ax.tick_params(labelleft=style.starts_row(ax))
+        ax.set_title(label, loc="left")
+        _show_differences(ax)
+    return selected.finish(figure)
+
+
+def _show_differences(ax: Axes) -> None:
+    """Scale the axis of the values so that small differences look as small as they are."""
+    if not ax.lines:
+        style.empty(ax)
+        return
+    drawn = scales.drawn(ax, "x")
+    scales.fit(ax, "x", drawn)
+    low, high = np.nanmin(drawn), np.nanmax(drawn)
+    if high - low < _LEAST_RANGE * abs(high):
+        ax.set_xlim(low - _LEAST_RANGE * abs(high), high + _LEAST_RANGE * abs(high))
 
 
 def response_curves(

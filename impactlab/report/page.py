@@ -51,6 +51,7 @@ _LEADING = (
     *(family.figure for family in FAMILIES),
     *(f"{axis}_convergence" for axis in dict.fromkeys(REFINED.values())),
     "parameter_effects",
+    "compared_values",
 )
 """Figures that answer a question, the first of a study before its others."""
 _SCREEN, _SCREEN_OF_LEAD = 1.3, 1.6
