@@ -34,7 +34,7 @@ def ishigami():
 
     def of_unit(unit):
         x = np.pi * (2 * unit - 1)
-        return np.sin(x[:, 0]) + a * np.sin(x[:, 1]) ** 2 + b * x[:, 2] ** 4 * np.sin(x[:, 0])
+        return np.sin(x[..., 0]) * (1 + b * x[..., 2] ** 4) + a * np.sin(x[..., 1]) ** 2
 
     v1 = 0.5 * (1.0 + b * np.pi**4 / 5.0) ** 2
     v2 = a**2 / 8.0
@@ -60,7 +60,7 @@ def g(*coefficients):
     np.fill_diagonal(second_order, np.nan)
 
     def of_unit(unit):
-        return np.prod((np.abs(4 * unit - 2) + a) / (1 + a), axis=1)
+        return np.prod((np.abs(4 * unit - 2) + a) / (1 + a), axis=-1)
 
     total_order = parts / (1.0 + parts) * (1.0 + v) / v
     return Known(of_unit, v, parts / v, total_order, second_order)
