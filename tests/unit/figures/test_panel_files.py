@@ -25,8 +25,9 @@ def _draw(study, folder, width, look="plain"):
     return draw_all(*study, folder, write)
 
 
-@pytest.mark.parametrize("look", style.SHEETS)
-@pytest.mark.parametrize("width", [style.SINGLE, style.DOUBLE])
+@pytest.mark.parametrize(
+    ("look", "width"), [*((look, style.SINGLE) for look in style.SHEETS), ("plain", style.DOUBLE)]
+)
 def test_every_panel_is_a_file_of_the_width_asked_for(study, tmp_path, width, look):
     before = dict(matplotlib.rcParams)
     written = _draw(study, tmp_path, width, look)

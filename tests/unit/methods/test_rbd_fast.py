@@ -72,7 +72,13 @@ def test_one_hypercube_gives_the_indices_of_each_method(tmp_path):
 
     def analysed(sampling):
         name = type(sampling).__name__
-        study = il.Study(title=name, function="ishigami", sampling=sampling, results=tmp_path)
+        study = il.Study(
+            title=name,
+            function="ishigami",
+            sampling=sampling,
+            analysis={"resamples": 5},
+            results=tmp_path,
+        )
         runs = study.run(workers=1)
         return runs, il.analyse(runs)
 
