@@ -78,7 +78,8 @@ def test_no_more_runs_are_placed_where_runs_have_failed():
         lambda u: np.zeros(len(u)),
     ],
 )
-def test_a_limit_out_of_reach_has_no_probability(response):
+def test_a_limit_out_of_reach_has_no_probability(response, monkeypatch):
+    monkeypatch.setattr(limit_state, "_LEVELS", 8)  # none of them reaches it
     result = learned_estimate(response, 2, 5.0, seed=1, **SETTINGS | {"most": 160})
     assert result.verdict is RareEventVerdict.NOT_REACHED
     assert np.isnan(result.probability)

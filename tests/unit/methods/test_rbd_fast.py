@@ -76,7 +76,7 @@ def test_one_hypercube_gives_the_indices_of_each_method(tmp_path):
             title=name,
             function="ishigami",
             sampling=sampling,
-            analysis={"resamples": 5},
+            analysis={"resamples": 10},
             results=tmp_path,
         )
         runs = study.run(workers=1)
