@@ -116,7 +116,7 @@ AGAIN = [
     ("parts_study", "first_contact"),
 ]
 """Figures with other curves or legends in a study that is not their first one."""
-WHOLE = {"parameter_effects", "nodes_convergence", "regression_indices"}
+WHOLE = {"parameter_effects", "nodes_convergence", "regression_indices", "contact_laws"}
 """Figures that are laid out with a panel for each of up to 17 responses, which takes seconds."""
 FEW = ["peak_force", "contact_duration", "peak_plastic_strain", "number_of_contacts"]
 
