@@ -104,12 +104,6 @@ def test_a_failed_run_is_fitted_around_not_filled(drawn_runs):
     np.testing.assert_allclose(found["surrogate_held_out"], exact["surrogate_held_out"], rtol=1e-5)
 
 
-def test_too_few_runs_give_none(drawn_runs, verdicts_of):
-    found = analysis(drawn_runs(base_samples=2, peak_force=smooth))
-    assert verdicts_of(found["surrogate_verdict"]) == ["too_few_runs"]
-    assert np.isnan(found["surrogate_first_order"]).all()
-
-
 def test_the_order_of_runs_and_responses_does_not_matter(drawn_runs):
     runs = drawn_runs(base_samples=64, peak_force=smooth, impulse=ishigami)
     shuffled = runs.isel(run=np.random.default_rng(0).permutation(runs.sizes["run"]))
