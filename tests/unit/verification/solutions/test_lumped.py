@@ -8,13 +8,10 @@ from scipy.integrate import quad
 
 from impactlab.model.impact import paper_impact
 from impactlab.verification.cases import timoshenko_impact
-from impactlab.verification.solutions import hertz, modal
-from impactlab.verification.solutions.beam_modes import BeamModes, odd_modes
+from impactlab.verification.solutions import hertz
+from impactlab.verification.solutions.beam_modes import odd_modes
 
 PAPER, TIMOSHENKO = paper_impact(contact="hertz"), timoshenko_impact()
-CASES = pytest.mark.parametrize(
-    ("impact", "duration"), [(PAPER, 4e-4), (TIMOSHENKO, 3e-4)], ids=["paper", "timoshenko"]
-)
 
 
 def answers(solution):
@@ -49,44 +46,6 @@ def test_rigid_beam_without_gravity_is_hertz(impact):
     left = solution.at("sphere_velocity", [1.2 * duration])
     np.testing.assert_allclose(left, -impact.velocity, rtol=1e-10)
     np.testing.assert_array_equal(solution.at("midspan_deflection", [duration]), 0.0)
-
-
-def test_a_free_mass_is_hertz_with_the_reduced_mass():
-    impact = replace(PAPER, gravity=0.0)
-    mass, velocity, *rest = hertz.arguments(impact)
-    reduced = 1 / (1 / mass + 1 / 5.0)
-    expected = [f(reduced, velocity, *rest) for f in (hertz.peak_force, hertz.contact_duration)]
-    solution = hertz.solve(impact, 4e-4, mass=5.0)
-    np.testing.assert_allclose(answers(solution), expected, rtol=1e-10)
-    pushed = solution.at("midspan_velocity", [4e-4])
-    np.testing.assert_allclose(pushed, 2 * mass / (mass + 5.0) * velocity, rtol=1e-10)
-
-
-@CASES
-def test_agrees_with_the_march_of_one_mode(impact, duration):
-    """The same model, as a beam with one mode that holds all of the static deflection."""
-    beam, (mass, stiffness) = impact.beam, hertz.spring_mass(impact.beam)
-    table = BeamModes(
-        beam,
-        np.array([np.pi / beam.span]),
-        np.array([np.sqrt(stiffness / mass)]),
-        np.array([beam.span**3 / (48 * beam.bending_stiffness)]),
-        np.array([-12 / beam.span**2]),
-        (beam.span**3 / (48 * beam.bending_stiffness), -beam.span / (4 * beam.bending_stiffness)),
-    )
-    marched = modal.solve_with(table, impact, duration, duration / 10_000)
-    solution = hertz.solve_spring_mass(impact, duration)
-    np.testing.assert_allclose(answers(solution), answers(marched), rtol=3e-7)
-    times = marched.time[::100]
-    for name in ("contact_force", "midspan_deflection", "sphere_velocity", "indentation"):
-        ours, theirs = solution.at(name, times), marched.at(name, times)
-        np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-6 * np.abs(theirs).max())
-
-
-def test_contact_that_outlasts_the_duration_has_no_end():
-    solution = hertz.solve_spring_mass(PAPER, 5e-5)
-    assert np.isnan(solution.contact_duration)
-    np.testing.assert_allclose(solution.at("contact_force", [5e-5]), solution.peak_force)
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ def errors(name, points):
 
 
 @pytest.mark.parametrize("name", DEGREE)
-@pytest.mark.parametrize("points", [2, 3, 4, 5, 9, 16, 33, 64])
+@pytest.mark.parametrize("points", [2, 3, 5, 64])
 def test_rule_is_exact_up_to_its_degree_and_no_further(name, points):
     error, degree = errors(name, points), DEGREE[name](points)
     assert error[: degree + 1].max() < 1e-13
