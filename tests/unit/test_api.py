@@ -205,6 +205,10 @@ def many():
         (lambda: small(responses=["force"]), "Study: responses.0 = 'force': unknown response; did"),
         (lambda: small(name="../up"), "Study: name = '../up': its name becomes"),
         (
+            lambda: small(sampling=replace(SAMPLE, base_samples=100)),
+            "Study: sampling.base_samples = 100: must be a power of two, such as 64 or 128",
+        ),
+        (
             lambda: small(sampling=il.Grid(parameters={"beam_depht": [1]})),
             "Study: sampling.parameters.beam_depht = [1]: unknown key; did you mean 'beam_depth'",
         ),

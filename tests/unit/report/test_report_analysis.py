@@ -42,7 +42,7 @@ def test_verdicts_and_the_largest_numbers_over_the_grid_are_told(report, discret
 
 def test_limits_that_are_none_and_points_by_rule_are_told(report, discretisation_study):
     runs, analysis = few(discretisation_study)
-    analysis["points_needed"].loc[{"response": "impulse", "rule": "layers"}] = 17.0
+    analysis["points_needed"].loc["impulse"].loc[{"rule": "layers", "velocity": 15.0}] = 17.0
     analysis["points_uncertainty"] = 0 * analysis["points_needed"] + 0.015
     flags = {"flag_meanings": "monotone stalled not_convergent_by_design"}
     analysis["nodes_behaviour"].attrs |= flags

@@ -263,6 +263,30 @@ def test_groups_take_the_place_of_parameters(report):
     assert _table(page, "Sobol indices, first order")[0][1:3] == ["Speed", "Beam material"]
 
 
+def test_responses_and_parameters_of_another_solver(report):
+    """A test function has neither impacts nor units."""
+    random = np.random.default_rng(0)
+    x = random.uniform(-np.pi, np.pi, 64)
+    given = {"distribution": "uniform", "low": -np.pi, "high": np.pi}
+    attrs = {"study": "ishigami", "method": "sobol", "varied": "x1", "responses": "value"}
+    runs = xr.Dataset(
+        {"value": ("run", np.sin(x)), "status": ("run", np.zeros(64, int))},
+        {"run": np.arange(64), "x1": ("run", x, given)},
+        attrs,
+    )
+    analysis = xr.Dataset(
+        {
+            "first_order": (("response", "parameter"), [[0.31]]),
+            "total_order": (("response", "parameter"), [[0.56]]),
+        },
+        {"response": ["value"], "parameter": ["x1"]},
+        attrs,
+    )
+    page = report(runs, analysis)
+    assert _table(page, "Sobol indices, first order")[1] == ["Value", "0.31"]
+    assert "uniform: low −3.142, high 3.142" in page.text
+
+
 @pytest.mark.parametrize(
     ("value", "margin", "text"),
     [

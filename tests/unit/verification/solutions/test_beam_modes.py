@@ -27,6 +27,16 @@ def test_frequencies_are_those_of_a_finite_difference_beam():
     np.testing.assert_allclose(odd_modes(BEAM, 3).frequencies, frequencies, rtol=2e-4)
 
 
+@pytest.mark.parametrize("count", [1, 3, 50])
+def test_modes_left_out_are_the_tails_of_the_series(count):
+    modes, many = odd_modes(BEAM, count), odd_modes(BEAM, 200_000)
+    tail = many.flexibilities[count:]
+    assert modes.residual_flexibility == pytest.approx(tail.sum(), rel=1e-7)
+    curvature = -(many.wave_numbers[count:] ** 2) @ tail
+    # What 200,000 modes leave out is itself 1.3e-6 of the whole.
+    assert modes.residual_curvature == pytest.approx(curvature, rel=1e-3)
+
+
 STUBBY = replace(BEAM, depth=0.2)
 BEAMS = pytest.mark.parametrize("beam", [BEAM, STUBBY], ids=["paper", "stubby"])
 
@@ -82,6 +92,17 @@ def test_modes_add_up_to_the_static_deflection_curve(beam):
         np.testing.assert_allclose(modes.flexibilities @ shapes, expected, rtol=0, atol=left_out)
         whole = modes.flexibilities.sum() + modes.residual_flexibility
         assert whole == pytest.approx(expected[-1], rel=1e-12)
+
+
+@BEAMS
+def test_timoshenko_modes_left_out_are_the_tails_of_the_series(beam):
+    modes, many = timoshenko_odd_modes(beam, 10), timoshenko_odd_modes(beam, 100_000)
+    rest = np.ones(200_000, dtype=bool)
+    rest[:10] = rest[100_000:100_010] = False
+    tail = many.flexibilities[rest].sum()
+    assert modes.residual_flexibility == pytest.approx(tail, rel=2e-4)
+    curvature = many.curvatures[rest] @ many.flexibilities[rest]
+    assert modes.residual_curvature == pytest.approx(curvature, rel=2e-4)
 
 
 def test_curvatures_are_those_of_the_rotation():
