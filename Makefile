@@ -109,7 +109,7 @@ stored: $(MADE)-docs
 	$(IN_VENV) python docs/made.py $(STORED)
 
 site: docs $(MADE)-dev
-	$(IN_VENV) python -m pytest -m site $(PYTEST_ARGS)
+	$(IN_VENV) python -m pytest -n auto --dist worksteal -m site $(PYTEST_ARGS)
 
 # In an environment of its own, whose metadata may be newer than what .venv knows. Changelog and address
 # last: until they are stated, what was built is for a trial.

@@ -5,7 +5,7 @@ import json
 import re
 import shlex
 import shutil
-import subprocess
+import warnings
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
@@ -14,6 +14,7 @@ from typing import Any
 from urllib.parse import unquote, urlsplit
 
 import pytest
+from command_line import called
 
 import impactlab as il
 
@@ -87,17 +88,22 @@ MISDRAWN = """() => {
 """Roots lower than what they span, and subscripts that are not beside their letter."""
 
 
-@pytest.mark.chromium
-def test_equations_are_drawn_as_written():
+@pytest.fixture
+def browser():
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     if CHROMIUM is None:
         pytest.skip("there is no command chromium")
     with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        page: Any = browser.new_page()
-        page.goto((SITE / "theory.html").as_uri())
-        drawn = page.evaluate(MISDRAWN)
-        browser.close()
+        chromium = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield chromium
+        chromium.close()
+
+
+@pytest.mark.chromium
+def test_equations_are_drawn_as_written(browser):
+    page: Any = browser.new_page()
+    page.goto((SITE / "theory.html").as_uri())
+    drawn = page.evaluate(MISDRAWN)
     assert any("STIX Two Math" in family for family in drawn["fonts"])
     assert min(drawn["counts"][:2]) > 0
     assert drawn["misdrawn"] == []
@@ -113,24 +119,18 @@ def test_fractions_have_braces():
 
 
 @pytest.mark.chromium
-def test_no_page_asks_for_anything_outside():
-    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-    if CHROMIUM is None:
-        pytest.skip("there is no command chromium")
+def test_no_page_asks_for_anything_outside(browser):
     asked: set[str] = set()
     complaints: list[str] = []
-    with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        page: Any = browser.new_page(viewport={"width": 420, "height": 800})
-        page.on("request", lambda request: asked.add(request.url))
-        page.on("console", lambda said: complaints.append(f"{page.url}: {said.text}"))
-        page.on("pageerror", lambda error: complaints.append(f"{page.url}: {error}"))
-        wide = []
-        for path in PAGES:
-            page.goto(path.as_uri())
-            if page.evaluate("document.documentElement.scrollWidth > window.innerWidth"):
-                wide.append(path.name)
-        browser.close()
+    page: Any = browser.new_page(viewport={"width": 420, "height": 800})
+    page.on("request", lambda request: asked.add(request.url))
+    page.on("console", lambda said: complaints.append(f"{page.url}: {said.text}"))
+    page.on("pageerror", lambda error: complaints.append(f"{page.url}: {error}"))
+    wide = []
+    for path in PAGES:
+        page.goto(path.as_uri())
+        if page.evaluate("document.documentElement.scrollWidth > window.innerWidth"):
+            wide.append(path.name)
     assert {url for url in asked if not url.startswith(("file://", "data:", "blob:"))} == set()
     assert complaints == []
     assert wide == []
@@ -246,7 +246,8 @@ def test_code_blocks_run(path, folder):
     )
     commands = COMMAND.findall(whole) + quick.findall(whole)
     for words in (each for each in commands if not LEFT_OUT.search(each)):
-        done = subprocess.run(shlex.split(words), capture_output=True, text=True)
+        with warnings.catch_warnings(action="default"):  # as on the command line
+            done = called(*shlex.split(words)[1:], cwd=folder)
         assert done.returncode == 0, f"{words}: {done.stderr}"
 
 

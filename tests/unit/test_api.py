@@ -202,9 +202,7 @@ def many():
         (lambda: small().run(workers=0), "run.workers = 0: must be a whole number of at least 1"),
         (lambda: il.analyse(many()), "the runs are not those of a study"),
         (lambda: il.plot.run(many()), "run: expected the dataset of one impact"),
-        (lambda: small(sampling=None), "Study: sampling: is required"),
         (lambda: small(responses=["force"]), "Study: responses.0 = 'force': unknown response; did"),
-        (lambda: small(impact={"base": "paper", "speed": 1}), "Study: impact.speed = 1: unknown"),
         (lambda: small(name="../up"), "Study: name = '../up': its name becomes"),
         (
             lambda: small(sampling=replace(SAMPLE, base_samples=100)),

@@ -6,6 +6,7 @@ from scipy.stats import chi2, norm
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF
 
+from impactlab.analysis import limit_state
 from impactlab.analysis.limit_state import Process, _batch, learned_estimate
 from impactlab.analysis.rare_event import RareEventVerdict
 
@@ -33,8 +34,9 @@ def test_a_smooth_response_takes_a_tenth_of_the_runs(case):
     assert max(result.runs for result in results) < 400
 
 
-def test_a_process_that_is_wrong_costs_runs_but_adds_no_bias():
+def test_a_process_that_is_wrong_costs_runs_but_adds_no_bias(monkeypatch):
     """Many small waves look like noise to the process, and move the limit."""
+    monkeypatch.setattr(limit_state, "_LEARNING", 80)  # more take seconds, and teach nothing
     waves = lambda u: 0.5 * np.sign(np.sin(40 * u[:, 1]))  # noqa: E731
     exact = 0.5 * norm.sf(2.0) + 0.5 * norm.sf(3.0)
     results = [
@@ -76,8 +78,9 @@ def test_no_more_runs_are_placed_where_runs_have_failed():
         lambda u: np.zeros(len(u)),
     ],
 )
-def test_a_limit_out_of_reach_has_no_probability(response):
-    result = learned_estimate(response, 2, 5.0, seed=1, **SETTINGS)
+def test_a_limit_out_of_reach_has_no_probability(response, monkeypatch):
+    monkeypatch.setattr(limit_state, "_LEVELS", 8)  # none of them reaches it
+    result = learned_estimate(response, 2, 5.0, seed=1, **SETTINGS | {"most": 160})
     assert result.verdict is RareEventVerdict.NOT_REACHED
     assert np.isnan(result.probability)
-    assert result.runs <= 400
+    assert result.runs <= 160

@@ -17,8 +17,7 @@ def parabola(slope, level):
 
 
 CASES = {
-    "plane": (lambda u: u.sum(axis=1) / np.sqrt(8), 8, norm.isf(1e-5), 1e-5),
-    "far plane": (lambda u: u.sum(axis=1) / 2, 4, norm.isf(1e-7), 1e-7),
+    "far plane": (lambda u: u.sum(axis=1) / np.sqrt(8), 8, norm.isf(1e-7), 1e-7),
     "parabola": (lambda u: u[:, 0] - 0.3 * u[:, 1] ** 2, 2, 3.8, parabola(-0.3, 3.8)),
     "two regions": (
         lambda u: np.maximum(u[:, 0] / 4.2, -u[:, 0] / 4.4),

@@ -151,6 +151,7 @@ def test_a_study_of_one_run_with_profiles_moves_in_its_report(tmp_path, monkeypa
             impact=IMPACT,
             discretisation=GRID,
             duration="12 ms",
+            responses=["peak_force"],
             store={"profiles": True},
             sampling=il.Grid(parameters={"velocity": velocities}),
             name="one",

@@ -49,16 +49,6 @@ def test_without_an_extrapolated_value_the_finest_is_the_reference(study):
     assert curves == {"15 m/s, 3 points", "15 m/s, 17 points"}
 
 
-def test_the_legend_keeps_the_order_of_the_curves(study):
-    runs, analysis = study
-    first = {"response": "peak_force", "rule": "lobatto", "velocity": 0.99}
-    analysis["points_error"].loc[first] = np.nan
-    analysis["points_error"].loc[{"response": "peak_plastic_strain", "velocity": 0.99}] = 0.1
-    legend = POINTS.plot(runs, analysis).legends[0]
-    labels = [text.get_text() for text in legend.get_texts()]
-    assert labels[:2] == ["Gauss-Lobatto, 0.99 m/s", "Gauss-Lobatto, 15 m/s"]
-
-
 def test_verdicts_are_written_and_warnings_stand_out(study):
     figure = NODES.plot(*study)
     good, bad = (

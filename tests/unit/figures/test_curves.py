@@ -93,16 +93,6 @@ def test_force_history_shows_the_stored_numbers(velocity_study):
     assert force[np.isfinite(force)][0] == 0.0
 
 
-def test_one_curve_for_each_finite_run(velocity_study, failing):
-    runs, _ = velocity_study
-    broken = failing(runs, {"velocity": -1, "contact": 1})
-    for name in ("first_contact", "force_indentation", "plastic_strain", "plastic_strain_depth"):
-        figure = CATALOGUE[name].plot(broken, NONE)
-        whole, gap = (_curves(figure, title) for title in ("Hertz", "Stronge"))
-        assert set(whole) - set(gap) == {"20 m/s"}
-        assert f"No curve for 20 m/s, {STRONGE}." in CATALOGUE[name].caption(broken, NONE)
-
-
 def test_force_history_has_a_panel_a_run_and_leaves_failed_ones_empty(velocity_study, failing):
     runs, _ = velocity_study
     broken = failing(runs, {"velocity": -1, "contact": 1})

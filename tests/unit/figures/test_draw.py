@@ -153,14 +153,6 @@ def test_every_point_that_is_drawn_and_no_guide(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_bars_upwards(tmp_path):
-    fig, (ax,) = style.panels(1, columns=1, height=50)
-    ax.hist([0.5, 1.5, 1.6], bins=[0.0, 1.0, 2.0])
-    (drawn,) = data.drawn(fig)
-    assert drawn.x.tolist() == [0.5, 1.5]
-    assert drawn.y.tolist() == pytest.approx([1.0, 2.0])
-
-
 @pytest.mark.parametrize(
     ("values", "scale"),
     [
@@ -191,11 +183,6 @@ def test_short_logarithmic_axes_still_have_labels():
         if low <= at <= high
     ]
     assert shown == ["0.25", "0.3", "0.4", "0.5"]
-
-
-def test_positive_leaves_gaps():
-    found = scales.positive([1.0, 0.0, -1.0, np.inf, np.nan, 1e-12], above=1e-9)
-    np.testing.assert_array_equal(found, [1.0] + 5 * [np.nan])
 
 
 def test_titles_wrapped_to_fit_are_one_line_in_words_and_data(study, tmp_path):

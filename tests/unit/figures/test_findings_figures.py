@@ -2,12 +2,15 @@
 
 import json
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
-from drawings import assert_texts_are_fit_for_print
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from drawings import (
+    assert_panels_and_legends_are_on_the_page_and_apart,
+    assert_text_is_apart,
+    assert_texts_are_fit_for_print,
+    laid_out,
+)
 
 from impactlab.figures import data, style
 from impactlab.figures import findings as drawn
@@ -16,12 +19,6 @@ from impactlab.verification.finding import Curve, CurvePanel, Finding, gravest_f
 from impactlab.verification.outcomes import packed
 
 MANY = [Curve(f"{n} nodes", np.arange(9.0), n + np.arange(9.0), n % 2 == 1) for n in range(9)]
-
-
-def _laid_out(figure):
-    with style.applied():
-        FigureCanvasAgg(figure).draw()
-    return figure
 
 
 def _with_panels(outcomes, *panels):
@@ -75,7 +72,7 @@ def test_nothing_overlaps_at_paper_width(kind, outcomes):
     bad = outcomes[1]
     first, second = bad.finding.panels
     long = "a title that goes on and on, for it states every parameter of the case"
-    figure = _laid_out(
+    figure = laid_out(
         {
             "overview": lambda: drawn.plot_overview(gravest_first(outcomes * 4)),
             "same legend": lambda: drawn.plot_curves(_with_panels(outcomes, first, first)),
@@ -89,22 +86,10 @@ def test_nothing_overlaps_at_paper_width(kind, outcomes):
     width = figure.get_figwidth() / style.MILLIMETRE
     assert min(abs(width - style.SINGLE), abs(width - style.DOUBLE)) < 1e-6
     assert_texts_are_fit_for_print(figure)
-    boxes = [axes.get_tightbbox() for axes in figure.axes]
-    boxes += [legend.get_window_extent() for legend in figure.legends]
-    for at, box in enumerate(boxes):
-        assert box is not None
-        assert box.x0 >= -1
-        assert box.x1 <= figure.bbox.x1 + 1
-        assert box.y1 <= figure.bbox.y1 + 1
-        assert not any(box.padded(-1).overlaps(other) for other in boxes[at + 1 :])
-    for axes in figure.axes:
-        height = axes.get_window_extent().height
-        assert height > 20 * style.MILLIMETRE * figure.dpi
-        for ticks in (axes.get_xticklabels(), axes.get_yticklabels()):
-            labels = [label.get_window_extent() for label in ticks if label.get_text()]
-            inside = [b for b in labels if axes.get_tightbbox().padded(1).contains(b.x0, b.y0)]
-            ordered = sorted(inside, key=lambda b: (b.x0, b.y0))
-            assert not any(left.overlaps(right) for left, right in pairwise(ordered))
+    assert_text_is_apart(figure)
+    assert_panels_and_legends_are_on_the_page_and_apart(figure)
+    heights = [axes.get_window_extent().height for axes in figure.axes]
+    assert min(heights) > 20 * style.MILLIMETRE * figure.dpi
 
 
 def test_ours_and_independent_curves_differ_without_colour(outcomes):
@@ -143,6 +128,6 @@ def test_few_points_beside_a_dense_curve_are_not_joined(outcomes):
     x = np.arange(3.0)
     below = CurvePanel("t", ("x", "m"), ("y", "m"), [Curve("a", x, -1.0 - x)], log=True)
     missing = CurvePanel("t", ("x", "m"), ("y", "m"), [Curve("a", x, x * np.nan)])
-    figure = _laid_out(drawn.plot_curves(_with_panels(outcomes, below, missing)))
+    figure = laid_out(drawn.plot_curves(_with_panels(outcomes, below, missing)))
     said = [axes.texts[0].get_text() for axes in figure.axes]
     assert said == ["no finite values above zero", "no finite values"]

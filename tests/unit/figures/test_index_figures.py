@@ -56,6 +56,13 @@ def test_pairs_are_shown_once_and_only_significant_ones_have_numbers(study):
     assert len(written) == int((abs(pairs(index)) > pairs(margin)).sum()) < 6
     assert "0.07" in written
     assert "−.01" not in written
+    # short names stand under the columns, long ones have numbers
+    names = list("abcd")
+    short = {"parameter": names, "other_parameter": names}
+    short |= {"parameter_long_name": ("parameter", names)}
+    figure = CATALOGUE["sobol_second_order"].plot(runs, analysis.assign_coords(short))
+    columns = panel(figure, "Peak force").get_xticklabels()
+    assert [text.get_text() for text in columns] == ["b", "c", "d"]
     # without intervals no pair is significant
     figure = CATALOGUE["sobol_second_order"]
     assert not figure.applies(runs, analysis.drop_vars("second_order_interval"))

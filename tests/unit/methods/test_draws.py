@@ -32,25 +32,6 @@ def test_every_replicate_of_a_sample_is_even_and_independent(sampled, cube):
     assert len(orders) == 8
 
 
-def steps(draws, units):
-    """Differences along each trajectory: (trajectory, step, parameter)."""
-    return np.diff(draws.reshape(-1, units + 1, draws.shape[1]), axis=1)
-
-
-@pytest.mark.parametrize("levels", [2, 4, 10])
-def test_every_parameter_steps_once_along_each_trajectory(sampled, cube, levels):
-    draws = cube(sampled("morris", trajectories=20, levels=levels))
-    grid = np.linspace(0, 1, levels)
-    assert np.abs(draws[..., None] - grid).min(axis=-1).max() < 1e-8
-    change = steps(draws, 3)
-    moved = np.abs(change) > 1e-6
-    assert (moved.sum(axis=1) == 1).all()
-    assert (moved.sum(axis=2) == 1).all()
-    # Morris (1991): half the levels, in their spacing
-    np.testing.assert_allclose(np.abs(change[moved]), levels / (2 * (levels - 1)), atol=1e-8)
-    assert {1, -1} == set(np.sign(change[moved]))
-
-
 def spectra(draws):
     """Magnitudes of each parameter's frequencies along a curve: (frequency, parameter)."""
     return np.abs(np.fft.rfft(draws - draws.mean(axis=0), axis=0))

@@ -17,28 +17,6 @@ def sample_of(inputs, seed, **attributes):
     return Sample.of(runs)
 
 
-def test_the_criterion_is_that_of_its_definition():
-    """The mean over all ordered quadruples (Song et al. 2012, eq. 3), of eight runs."""
-    rng = np.random.default_rng(1)
-    x, y = rng.normal(size=(2, 8))
-    K, L = hsic._gaussian(x), hsic._gaussian(y + x)
-    quadruples = [
-        (i, j, q, r)
-        for i in range(8)
-        for j in range(8)
-        for q in range(8)
-        for r in range(8)
-        if len({i, j, q, r}) == 4
-    ]
-    terms = [K[i, j] * (L[i, j] + L[q, r] - 2 * L[i, q]) for i, j, q, r in quadruples]
-    assert hsic._criterion(hsic._hollow(K), hsic._hollow(L)) == pytest.approx(
-        np.mean(terms), rel=1e-12
-    )
-    one, none = hsic.r_squared(K, K, np.arange(8)[np.newaxis])[::2]
-    assert one == pytest.approx(1.0)
-    assert none == pytest.approx([1.0])
-
-
 @pytest.mark.parametrize("runs", [64, 128])
 def test_intervals_cover_and_independence_is_rejected_rarely(runs):
     """Against the mean over 200 samples, which has no bias of noise; x1 is independent."""

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from impactlab.methods import INDICES, METHODS, SAMPLES
+from impactlab.methods.hypercube import Hypercube
+from impactlab.variables import RESPONSES
 
 SETTINGS = {
     "sobol": {"base_samples": 16, "second_order": False},
@@ -17,24 +19,20 @@ SETTINGS = {
 SETTINGS |= {name: {"samples": 128} for name in METHODS if name not in SETTINGS}
 del SETTINGS["grid"]
 methods = pytest.mark.parametrize("method", SETTINGS)
+designs = pytest.mark.parametrize("method", ["sobol", "morris", "fast", "latin"])
 
 
-def test_every_method_but_the_grid_is_analysed():
+def test_every_method_but_the_grid_is_analysed_and_in_the_docs():
     assert SAMPLES.keys() - {"latin", "table"} == INDICES.keys()
-    assert all(
-        kind.label and kind.records[0].name == name
-        for name, kind in SAMPLES.items()
-        if name not in ("latin", "table")
-    )
+    assert all(SAMPLES[name].label and SAMPLES[name].records[0].name == name for name in INDICES)
+    docs = (Path(__file__).parents[3] / "docs" / "studies.md").read_text(encoding="utf-8")
+    assert [name for name in SETTINGS if f"| `{name}` | " not in docs] == []
+    # those that are not drawn below share the draws of a Latin hypercube
+    others = SETTINGS.keys() - {"sobol", "morris", "fast"}
+    assert {METHODS[name].draws for name in others} == {Hypercube.draws}
 
 
-@methods
-def test_the_docs_list_every_method(method):
-    table = Path(__file__).parents[3] / "docs" / "studies.md"
-    assert f"| `{method}` | " in table.read_text(encoding="utf-8")
-
-
-@methods
+@designs
 def test_every_seed_repeats_itself_and_differs_from_the_others(sampled, cube, method):
     """Seed 0 among them, which SALib takes for none in places."""
     first = {
@@ -57,10 +55,12 @@ def test_the_design_says_how_it_was_drawn(sampled, method):
     assert {"confidence", spread, "failed_runs"} <= sample.attrs.keys()
     assert not {"groups", "until", "until_interval", "parameters"} & sample.attrs.keys()
     assert sample["run"].values.tolist() == list(range(sample.sizes["run"]))
-    assert sample["gravity"].attrs["distribution"] == "uniform"
+    expected = {"distribution": "uniform", "low": 0.0, "high": 10.0}
+    assert sample["gravity"].attrs.items() >= (expected | {"units": "m s-2"}).items()
+    assert sample.attrs["responses"] == list(RESPONSES)
 
 
-@methods
+@designs
 def test_draws_keep_off_the_ends_of_the_ranges(sampled, cube, method):
     """There the quantiles of unbounded distributions are infinite."""
     draws = cube(sampled(method, **SETTINGS[method]))
@@ -68,7 +68,7 @@ def test_draws_keep_off_the_ends_of_the_ranges(sampled, cube, method):
     assert 0.95 < draws.max() < 1
 
 
-@methods
+@designs
 def test_a_fixed_parameter_leaves_the_sample_as_it_is(sampled, cube, method):
     width = {"beam_width": {"distribution": "fixed", "value": "61 mm"}}
     mass = {"sphere_mass": {"distribution": "fixed", "value": 1.4}}
@@ -83,7 +83,7 @@ def test_a_fixed_parameter_leaves_the_sample_as_it_is(sampled, cube, method):
     assert "sphere_mass" not in without.coords
 
 
-@methods
+@designs
 def test_a_distribution_shapes_its_column_alone(sampled, cube, method):
     mode = {"distribution": "triangular", "low": 0.0, "mode": 0.0, "high": 10.0}
     shaped = cube(sampled(method, {"gravity": mode}, **SETTINGS[method]))

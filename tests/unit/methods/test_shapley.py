@@ -6,6 +6,7 @@ from math import comb
 import numpy as np
 import pytest
 import xarray as xr
+from known_indices import INDICES
 
 import impactlab as il
 from impactlab.methods import shapley
@@ -44,13 +45,14 @@ def _linear(slopes, correlation):
 
 
 def _ishigami():
-    v1, v2, v13 = 0.5 * (1 + 0.1 * np.pi**4 / 5) ** 2, 49 / 8, 0.01 * np.pi**8 * (1 / 18 - 1 / 50)
+    """Pairs are the highest interactions, and each is divided between its two parameters."""
+    known = INDICES["ishigami"]
 
     def draw(rng, runs):
-        x = rng.uniform(-np.pi, np.pi, (runs, 3))
-        return x, np.sin(x[:, 0]) * (1 + 0.1 * x[:, 2] ** 4) + 7 * np.sin(x[:, 1]) ** 2
+        unit = rng.random((runs, 3))
+        return unit, known.of_unit(unit)
 
-    return draw, np.array([v1 + v13 / 2, v2, v13 / 2]) / (v1 + v2 + v13)
+    return draw, (known.first_order + known.total_order) / 2
 
 
 def _with_word():
@@ -81,8 +83,10 @@ def sample_of(inputs, seed, words=()):
     return Sample.of(runs)
 
 
-@pytest.mark.parametrize("runs", [128, 512])
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    ("name", "runs"),
+    [("correlated", 128), ("inert but correlated", 512), ("ishigami", 512), ("word", 128)],
+)
 def test_intervals_cover_the_known_effects(name, runs):
     draw, exact = CASES[name]
     covered, sums = [], []

@@ -22,7 +22,7 @@ FOCUS = "document.activeElement"
 def address(tmp_path_factory):
     """A report with failures, a mostly constant response and most kinds of indices."""
     folder = tmp_path_factory.mktemp("sample")
-    runs = samples.sample(128, failures=5)[["peak_force", "remote_plastic_strain", "status"]]
+    runs = samples.sample(128, 5, failures=5)[["peak_force", "remote_plastic_strain", "status"]]
     analysis = samples.indices(runs).drop_vars(ALIKE)
     draw_all(runs, analysis, folder / "figures")
     write_report(runs, analysis, folder / "figures", folder / "report.html")

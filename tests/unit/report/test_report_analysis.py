@@ -3,9 +3,9 @@
 import re
 
 import numpy as np
+from made_runs import FEW, few
 
 from impactlab.figures.catalogue import CATALOGUE
-from impactlab.variables import RESPONSES
 
 NODES = "Convergence in nodes along the span: 17 points, Gauss-Lobatto"
 POINTS = "Convergence in integration points over the depth: 401 nodes, Gauss-Lobatto"
@@ -15,30 +15,11 @@ def _row(page, table, head):
     return next(row for row in page.tables[table] if row[0].startswith(head))
 
 
-def test_verdicts_are_told_by_response(report, discretisation_study):
-    runs, analysis = discretisation_study
+def test_verdicts_and_the_largest_numbers_over_the_grid_are_told(report, discretisation_study):
+    runs, analysis = few(discretisation_study)
     coarse = {"response": "peak_force", "points": runs["points"].min().item()}
     analysis["nodes_verdict"].loc[coarse] = 2
     analysis["nodes_uncertainty"].loc[coarse] = 0.5
-    page = report(runs, analysis)
-    assert _row(page, NODES, "Peak force")[1:] == [
-        "convergedbehaviour: monotone",
-        "2",
-        "0.1 %",
-        "–",
-        "–",
-        "0.2 %",
-    ]
-    assert _row(page, NODES, "Peak plastic strain")[1] == "divergentbehaviour: divergent"
-    assert _row(page, POINTS, "Peak plastic strain")[1] == "not yet converged"
-    assert "meaning of divergent" in page.text
-    assert len(page.tables[NODES]) == len(page.tables[POINTS]) == 1 + len(RESPONSES)
-
-
-def test_the_largest_numbers_over_the_grid_are_shown_and_dashes_where_there_are_none(
-    report, discretisation_study
-):
-    runs, analysis = discretisation_study
     strain = {"response": "peak_plastic_strain"}
     analysis["nodes_observed_order"].loc[strain] = np.nan
     analysis["nodes_gci"].loc[strain] = np.inf
@@ -48,15 +29,21 @@ def test_the_largest_numbers_over_the_grid_are_shown_and_dashes_where_there_are_
     analysis["nodes_gci"].loc[first] = 0.07
     analysis["nodes_uncertainty"].loc[first] = 1e-5
     page = report(runs, analysis)
-    row = _row(page, NODES, "Peak force")
-    assert (row[3], row[6]) == ("7 %", "0.2 %")
+    force = ["convergedbehaviour: monotone", "2", "7 %", "–", "–", "0.2 %"]
+    assert _row(page, NODES, "Peak force")[1:] == force
+    assert _row(page, NODES, "Peak plastic strain")[1] == "divergentbehaviour: divergent"
+    assert _row(page, POINTS, "Peak plastic strain")[1] == "not yet converged"
+    assert "meaning of divergent" in page.text
+    assert len(page.tables[NODES]) == len(page.tables[POINTS]) == 1 + len(FEW)
     assert _row(page, NODES, "Peak plastic strain")[2:4] == ["–", "no bound"]
     assert _row(page, POINTS, "Peak plastic strain")[2] == "none of this study"
     assert _row(page, POINTS, "Impulse")[2] == "none of this study"
 
 
-def test_what_is_refined_along_and_what_has_no_limit_is_said(report, discretisation_study):
-    runs, analysis = discretisation_study
+def test_limits_that_are_none_and_points_by_rule_are_told(report, discretisation_study):
+    runs, analysis = few(discretisation_study)
+    analysis["points_needed"].loc["impulse"].loc[{"rule": "layers", "velocity": 15.0}] = 17.0
+    analysis["points_uncertainty"] = 0 * analysis["points_needed"] + 0.015
     flags = {"flag_meanings": "monotone stalled not_convergent_by_design"}
     analysis["nodes_behaviour"].attrs |= flags
     analysis["nodes_verdict"].attrs |= {
@@ -68,13 +55,6 @@ def test_what_is_refined_along_and_what_has_no_limit_is_said(report, discretisat
     assert "The peak plastic strain is not convergent by design: it gathers." in page.text
     assert "never so" not in page.text
     assert "behaviour: not convergent by design" in _row(page, NODES, "Peak plastic strain")[1]
-
-
-def test_points_needed_by_each_rule(report, discretisation_study):
-    runs, analysis = discretisation_study
-    where = {"response": "impulse", "rule": "layers"}
-    analysis["points_needed"].loc[where] = 17.0
-    page = report(runs, analysis.assign(points_uncertainty=0 * analysis["points_needed"] + 0.015))
     assert page.tables[POINTS][0][2:5] == [
         "Points needed for 1 %, Gauss-Lobatto",
         "Points needed for 1 %, Gauss-Legendre",
@@ -84,7 +64,7 @@ def test_points_needed_by_each_rule(report, discretisation_study):
 
 
 def test_the_time_step_has_a_table_and_a_caution(report, time_step_study):
-    runs, analysis = time_step_study
+    runs, analysis = few(time_step_study)
     analysis["time_step_verdict"].loc[{"response": "impulse"}] = 1
     page = report(runs, analysis)
     table = "Convergence in the time step at fixed nodes: 201 nodes, leapfrog"
@@ -95,14 +75,14 @@ def test_the_time_step_has_a_table_and_a_caution(report, time_step_study):
 
 
 def test_undefined_indices_are_said(report, sobol_study):
-    page = report(*sobol_study)
+    page = report(*few(sobol_study))
     table = "Sobol indices, first order, with half-widths of the 95 % intervals"
     assert _row(page, table, "Number of contacts")[1:] == 4 * ["undefined"]
     assert _row(page, table, "Peak force")[1:4] == ["0.71 ± 0.03", "0.12 ± 0.03", "−0.01 ± 0.03"]
     assert re.search(r"Do not rely on the indices of: .*number of contacts \(constant\)", page.text)
     assert "meaning of constant" in page.text
     # unsound indices carry a warning
-    runs, analysis = sobol_study
+    runs, analysis = few(sobol_study)
     analysis["sensitivity_verdict"].loc[{"response": "impulse"}] = 2
     page = report(runs, analysis)
     assert re.search(r"Do not rely on the indices of: .*impulse \(failed runs\)", page.text)
@@ -110,7 +90,7 @@ def test_undefined_indices_are_said(report, sobol_study):
 
 
 def test_the_confidence_is_that_of_the_analysis(report, sobol_study):
-    runs, analysis = sobol_study
+    runs, analysis = few(sobol_study)
     analysis.attrs["confidence"] = 0.9
     page = report(runs, analysis)
     assert "Sobol indices, total order, ± the half-width of the 90 % interval." in page.text
@@ -122,21 +102,14 @@ def test_the_confidence_is_that_of_the_analysis(report, sobol_study):
 
 
 def test_no_significant_share_is_said(report, sobol_study):
-    runs, analysis = sobol_study
+    runs, analysis = few(sobol_study)
     analysis["total_order_interval"][:] = 2.0
     page = report(runs, analysis)
     assert ": no parameter stands out from the noise" in page.text
 
 
-def test_sections_without_an_analysis_are_left_out(report, velocity_study):
-    page = report(*velocity_study)
-    ids = [attrs.get("id") for attrs in page.named("section")]
-    assert "convergence" not in ids
-    assert "sensitivity" not in ids
-
-
 def test_p_values_stand_below_the_indices_that_have_them(report, sobol_study):
-    runs, analysis = sobol_study
+    runs, analysis = few(sobol_study)
     for end in ("", "_interval"):
         analysis[f"hsic{end}"] = analysis[f"first_order{end}"]
     analysis["hsic_p_value"] = analysis["first_order"] * 0 + 0.0123

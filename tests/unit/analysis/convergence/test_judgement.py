@@ -107,7 +107,7 @@ FAMILIES = {
 def test_what_is_sound_holds_the_limit(family, ratio, grids):
     """The errors are 0.01 to 3 %; under noise 92 % or more hold, less two standard errors."""
     random, h, held = np.random.default_rng(3), ratio ** np.arange(grids), []
-    for _ in range(400 if "noise" in family else 60):
+    for _ in range(200 if "noise" in family else 40):
         errors = FAMILIES[family](h, random.uniform(), random.normal(size=grids))
         errors = errors * 10 ** random.uniform(-4, -1.5) / abs(errors[:2]).mean()
         found = judge(1 + errors, h)
@@ -115,7 +115,7 @@ def test_what_is_sound_holds_the_limit(family, ratio, grids):
             held.append(found.uncertainty * (1 + 1e-9) >= abs(errors[0] / (1 + errors[0])))
     assert sum(held) >= (0.88 if "noise" in family else 1.0) * len(held)
     if ratio == 2 and family == "order 2 under noise":
-        assert len(held) > 200
+        assert len(held) > 100
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from known_indices import INDICES
 from SALib.analyze import delta as salib_delta
 from SALib.analyze import pawn as salib_pawn
 from scipy.integrate import quad
@@ -48,17 +49,14 @@ def test_delta_of_a_linear_model(drawn, normal):
     assert abs(found["dummy_delta_first_order"]) < found["dummy_delta_first_order_interval"]
 
 
-def _ishigami(x):
-    return np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
-
-
 @pytest.mark.parametrize("runs", [200, 1000])
 def test_first_orders_of_few_runs_are_not_too_small(runs):
-    """The indices of Ishigami's function and an inert parameter are 0.314, 0.442, 0 and 0."""
-    exact, held, values = [0.3139, 0.4424, 0.0, 0.0], [], []
+    """Ishigami's function and an inert parameter."""
+    known = INDICES["ishigami"]
+    exact, held, values = [*known.first_order, 0.0], [], []
     for seed in range(200):
-        x = np.random.default_rng(seed).uniform(-np.pi, np.pi, (runs, 4))
-        value, error = first_orders(x, _ishigami(x))
+        x = np.random.default_rng(seed).random((runs, 4))
+        value, error = first_orders(x, known.of_unit(x))
         values.append(value)
         held.append(np.abs(value - exact) <= 1.96 * error)
     np.testing.assert_allclose(np.mean(values, axis=0), exact, atol=3 / runs + 0.005)
@@ -76,14 +74,14 @@ def test_delta_of_an_inert_parameter_is_within_its_interval(drawn):
     np.testing.assert_array_equal(np.mean(held, axis=0) > 0.8, [False, False, True])
 
 
-@pytest.mark.parametrize("runs", [500, 2000])
-def test_intervals_of_delta_hold_the_exact_ones_of_ishigami(drawn, runs):
+def test_intervals_of_delta_hold_the_exact_ones_of_ishigami(drawn):
     """By quadrature; its densities have sharp modes, which smoothing brings closer together."""
-    x = np.random.default_rng(runs).uniform(-np.pi, np.pi, (runs, 3))
-    found = sensitivity.analysis(drawn("delta", x, _ishigami(x), resamples=30)).isel(response=0)
+    x = np.random.default_rng(500).random((500, 3))
+    outputs = INDICES["ishigami"].of_unit(x)
+    found = sensitivity.analysis(drawn("delta", x, outputs, resamples=30)).isel(response=0)
     off = np.abs(found["delta"] - [0.264, 0.425, 0.209])
     assert (off < found["delta_interval"]).all()
-    assert (found["delta_interval"] < {500: 0.3, 2000: 0.14}[runs]).all()
+    assert (found["delta_interval"] < 0.3).all()
     assert found["delta"].values.argmax() == 1
 
 
@@ -116,20 +114,6 @@ def test_pawn_is_that_of_salib(drawn, normal):
     np.testing.assert_allclose(found["pawn_maximum"], theirs["maximum"], rtol=1e-12)
     assert found["pawn"][0] > found["pawn"][1] > 1.5 * found["dummy_pawn"]
     assert abs(found["pawn"][2] - found["dummy_pawn"]) < 0.1
-
-
-def test_pawn_of_a_linear_model(drawn):
-    """Against the distance of the two distributions at the middle of each slide."""
-    inputs = norm.ppf(qmc.LatinHypercube(3, rng=np.random.default_rng(4)).random(4000))
-    found = sensitivity.analysis(drawn("pawn", inputs, inputs @ WEIGHTS, resamples=20))
-    y = np.linspace(-6, 6, 2001)
-    middles = norm.ppf(np.arange(0.05, 1, 0.1))
-    for at in (0, 1):
-        spread = np.sqrt(1 - SHARES[at])
-        apart = [
-            abs(norm.cdf(y) - norm.cdf(y, z * np.sqrt(SHARES[at]), spread)).max() for z in middles
-        ]
-        np.testing.assert_allclose(found["pawn"][0, at], np.median(apart), atol=0.05)
 
 
 def test_distances_are_those_of_kolmogorov_and_smirnov():

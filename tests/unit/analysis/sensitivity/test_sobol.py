@@ -36,9 +36,9 @@ def test_analytic_indices(sample_runs, name, request):
     known: Any = request.getfixturevalue(name)
     x, names = _sample(known.size, 2048), [f"x{i}" for i in range(known.size)]
     found = sensitivity.analysis(sample_runs(names, 2048, peak_force=known.of_unit(x)))
-    _within_three_standard_errors(found, "first_order", known.first)
-    _within_three_standard_errors(found, "total_order", known.total)
-    _within_three_standard_errors(found, "second_order", known.second)
+    _within_three_standard_errors(found, "first_order", known.first_order)
+    _within_three_standard_errors(found, "total_order", known.total_order)
+    _within_three_standard_errors(found, "second_order", known.second_order)
     assert found["second_order"].dims == ("response", "parameter", "other_parameter")
     matrix = found["second_order"].values[0]
     np.testing.assert_array_equal(matrix, matrix.T)
@@ -51,7 +51,7 @@ def test_without_second_order(sample_runs, ishigami):
     found = sensitivity.analysis(runs)
     assert "second_order" not in found
     assert "other_parameter" not in found.coords
-    _within_three_standard_errors(found, "total_order", ishigami.total)
+    _within_three_standard_errors(found, "total_order", ishigami.total_order)
 
 
 def test_indices_and_intervals_are_those_of_covariances(sample_runs, ishigami):
@@ -94,7 +94,7 @@ def test_errors_are_smaller_than_those_of_salib(sample_runs, ishigami):
     """The estimators of SALib, of the same runs, over 40 samples."""
     names = ["x0", "x1", "x2"]
     problem = {"num_vars": 3, "names": names, "bounds": [[0.0, 1.0]] * 3}
-    exact = {"S1": ishigami.first, "ST": ishigami.total, "S2": ishigami.second}
+    exact = {"S1": ishigami.first_order, "ST": ishigami.total_order, "S2": ishigami.second_order}
     errors: dict[str, list[Any]] = {key: [] for key in exact}
     for seed in range(40):
         outputs = ishigami.of_unit(saltelli(names, 256, True, seed))
@@ -217,7 +217,7 @@ def test_groups_have_the_closed_indices(sample_runs, ishigami):
     attrs = {"groups": groups}
     found = sensitivity.analysis(sample_runs(names, 1024, attrs=attrs, peak_force=outputs))
     assert found["parameter"].values.tolist() == ["one", "other"]
-    share = ishigami.first[0] + ishigami.second[0, 2]
+    share = ishigami.first_order[0] + ishigami.second_order[0, 2]
     for name in ("first_order", "total_order"):
         _within_three_standard_errors(found, name, np.array([share, 1 - share]))
     assert abs(found["second_order"][0, 0, 1]) < found["second_order_interval"][0, 0, 1]

@@ -22,12 +22,6 @@ Answer = Callable[[Any], Any]
 UNIT = orthonormal(il.Uniform(0.0, 1.0))
 
 
-def ishigami(unit):
-    """Ishigami and Homma (1990), a = 7, b = 0.1, on the unit cube."""
-    x = np.pi * (2 * unit - 1)
-    return np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
-
-
 @pytest.fixture(scope="session")
 def drawn_runs():
     """Build Saltelli's runs of three parameters; answers: functions of the unit cube.

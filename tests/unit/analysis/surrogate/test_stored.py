@@ -5,6 +5,7 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
+from known_indices import INDICES
 
 from impactlab.analysis.surrogate import analysis, load_surrogate, packed
 from impactlab.analysis.surrogate.chaos import Chaos, orthonormal
@@ -12,7 +13,9 @@ from impactlab.files import write_netcdf
 from impactlab.methods.distributions import distribution_of
 from impactlab.report.console import print_predictions
 
-from .conftest import RANGES, ishigami
+from .conftest import RANGES
+
+ishigami = INDICES["ishigami"].of_unit
 
 
 def force(unit):

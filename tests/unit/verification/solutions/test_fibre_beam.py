@@ -28,21 +28,6 @@ def test_elastic_impact_is_that_of_the_modal_series(velocity, name):
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
 
 
-@pytest.mark.parametrize("impact", plasticity.STRUCK.values(), ids=plasticity.STRUCK)
-def test_twice_the_elements_and_steps_change_less_than_half_the_tolerances(impact):
-    elements, steps = plasticity.ELEMENTS, plasticity.STEPS
-    run, fine = (
-        fibre_beam.solve(
-            impact, plasticity.STRUCK_DURATION, elements=times * elements, steps=times * steps
-        )
-        for times in (1, 2)
-    )
-    for name, tolerance in plasticity.FIBRE_TOLERANCES.items():
-        expected = np.atleast_1d(getattr(fine, name))
-        expected = expected[::2] if expected.size > 1 else expected
-        assert apart(np.atleast_1d(getattr(run, name)), expected) < 0.5 * tolerance, name
-
-
 def test_as_opensees():
     """Under the same force; where the extra `opensees` is installed."""
     pytest.importorskip("openseespy")

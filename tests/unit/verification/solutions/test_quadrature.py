@@ -18,22 +18,11 @@ def errors(name, points):
 
 
 @pytest.mark.parametrize("name", DEGREE)
-@pytest.mark.parametrize("points", [2, 3, 4, 5, 9, 16, 33, 64])
+@pytest.mark.parametrize("points", [2, 3, 5, 64])
 def test_rule_is_exact_up_to_its_degree_and_no_further(name, points):
     error, degree = errors(name, points), DEGREE[name](points)
     assert error[: degree + 1].max() < 1e-13
     assert error[degree + 1] > 1e-4
-
-
-@pytest.mark.parametrize("name", DEGREE)
-@pytest.mark.parametrize("points", [2, 3, 9, 64])
-def test_points_ascend_and_mirror(name, points):
-    positions, weights = rule(name, points)
-    assert positions.shape == weights.shape == (points,)
-    assert np.all(np.diff(positions) > 0)
-    assert np.all(weights > 0)
-    np.testing.assert_allclose(positions, -positions[::-1], atol=1e-14)
-    np.testing.assert_allclose(weights, weights[::-1], atol=1e-14)
 
 
 def test_lobatto_points_are_the_tabled_ones():

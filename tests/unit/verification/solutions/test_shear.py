@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from scipy.integrate import quad
 
@@ -15,25 +14,6 @@ BEAM = paper_impact().beam
 def modulus_ratio(beam):
     """E/(k G)."""
     return beam.material.youngs_modulus * beam.width * beam.depth / beam_modes.shear_stiffness(beam)
-
-
-def bending_frequency(beam):
-    """omega_1 = (pi/L)^2 sqrt(EI/(rho A)) in rad/s, without shear and rotary inertia."""
-    return (np.pi / beam.span) ** 2 * np.sqrt(beam.bending_stiffness / beam.mass_per_length)
-
-
-def first_frequency(beam):
-    """omega_1 in rad/s with shear and rotary inertia.
-
-    The smaller root of rho^2 I/(k G) omega^4 - (rho A + rho I q^2 (1 + E/(k G))) omega^2 + EI q^4,
-    q = pi/L, divided by rho A and omega_1 of bending squared so that it is one number's root:
-    c x^2 - (1 + b) x + 1 = 0, x = (omega/omega_bending)^2.
-    """
-    r2 = beam.depth**2 / 12.0 * (np.pi / beam.span) ** 2
-    ratio = modulus_ratio(beam)
-    b, c = r2 * (1.0 + ratio), r2**2 * ratio
-    x = 2.0 / (1.0 + b + np.sqrt((1.0 + b) ** 2 - 4.0 * c))
-    return bending_frequency(beam) * np.sqrt(x)
 
 
 def static_share(beam):
@@ -64,12 +44,3 @@ def test_static_deflection_by_the_unit_load():
     assert bent + sheared == pytest.approx(2 * work, rel=1e-12)
     assert sheared / bent == pytest.approx(static_share(BEAM), rel=1e-12)
     assert static_share(BEAM) == pytest.approx(3.12 * (0.0278 / 0.78) ** 2, rel=1e-12)
-
-
-@pytest.mark.parametrize("depth", [0.0278, 0.3])
-def test_first_frequency_is_that_of_the_modes(depth):
-    beam = replace(BEAM, depth=depth)
-    modes = beam_modes.timoshenko_odd_modes(beam, 1)
-    assert first_frequency(beam) == pytest.approx(modes.frequencies[0], rel=1e-12)
-    plain = beam_modes.odd_modes(beam, 1).frequencies[0]
-    assert bending_frequency(beam) == pytest.approx(plain, rel=1e-14)
