@@ -17,11 +17,12 @@ from made_runs import design_of, made_once, with_answers
 
 from impactlab.analysis import distribution
 from impactlab.fem3d.figures.witness import FIGURES
-from impactlab.figures import data, style
+from impactlab.figures import data, labels, style
 from impactlab.figures.catalogue import CATALOGUE, LEAD, applicable
 from impactlab.figures.distributions import exceedance
 from impactlab.figures.samples import scatter
 from impactlab.methods import INDICES
+from impactlab.solver.contact import LAWS
 from impactlab.solver.outputs import SERIES
 from impactlab.variables import RESPONSES, described
 
@@ -50,6 +51,7 @@ EXPECTED = {
     "strikes_study": {"strike_series", "contact_duration", "parameter_effects"},
     "material_study": {"parameter_effects"},
     "shear_study": {"shear", "parameter_effects"},
+    "words_study": {"compared_values"},
     "discretisation_study": {"nodes_convergence", "points_convergence", "convergence_cost"},
     "time_step_study": {"time_step_convergence"},
     "witness_study": {
@@ -135,6 +137,18 @@ def sample_study():
         for end in ("", "_interval"):
             analysis[f"{name}{end}"] = analysis[f"first_order{end}"]
     return runs, analysis
+
+
+@made_once
+def words_study():
+    """Three laws at two velocities and with two ends: no parameter has a curve."""
+    varied = {
+        "contact": list(LAWS[:3]),
+        "velocity": [1.0, 5.0],
+        "support_left": ["pinned", "clamped"],
+    }
+    runs = with_answers(design_of(varied, study="words", method="grid"))
+    return described(runs), xr.Dataset(attrs=runs.attrs)
 
 
 @made_once
@@ -314,3 +328,16 @@ def test_a_panel_alone_fits_a_column(name, sample_study):
     assert_texts_are_fit_for_print(drawn)
     assert_text_is_apart(drawn)
     assert_panels_and_legends_are_on_the_page_and_apart(drawn)
+
+
+def test_words_are_compared_side_by_side(words_study):
+    """Every run is a marker in the row of its law; force that hardly differs looks alike."""
+    runs, analysis = words_study
+    runs = runs.assign(peak_force=31e3 + 1e-3 * runs["peak_force"])
+    ax = CATALOGUE["compared_values"].plot(runs, analysis).axes[0]
+    force = {tuple(np.round(line.get_xdata(), 9)) for line in ax.lines}
+    expected = (1e-3 * runs["peak_force"]).stack(curve=["velocity", "support_left"])
+    assert force == set(map(tuple, np.round(expected.values.T, 9)))
+    rows = [text.get_text() for text in ax.get_yticklabels()]
+    assert rows == [labels.brief(runs["contact"], row) for row in range(3)]
+    assert np.ptp(ax.get_xlim()) > 0.09 * 31
