@@ -261,8 +261,8 @@ def _plan_compared(runs: xr.Dataset) -> Plan:
 def compared_values(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
     """Draw a panel per response, a row per word or number, colours by the second parameter."""
     compared, selected = runs[_compared(runs)], _plan_compared(runs)
-    rows = np.arange(compared.size)
-    figure, axes = style.response_panels(responses(runs), height=16.0 + 4.0 * rows.size)
+    rows = np.arange(compared.size, dtype=float)
+    figure, axes = style.response_panels(responses(runs), height=16.0 + 4.0 * compared.size)
     for name, ax in axes.items():
         values, label = style.in_display_units(runs, name)
         for number, curve in enumerate(selected.curves):
@@ -270,8 +270,8 @@ def compared_values(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
                 ax.lines[-1].set_linestyle("none")  # nothing lies between
                 down = (number - 0.5 * (len(selected.curves) - 1)) * _BESIDE
                 ax.lines[-1].set_transform(offset_copy(ax.transData, figure, 0.0, -down, "points"))
-        name_places(ax, "y", [labels.brief(compared, row) for row in rows])
-        ax.set_ylim(rows.size - 0.5, -0.5)
+        name_places(ax, "y", [labels.brief(compared, row) for row in range(compared.size)])
+        ax.set_ylim(compared.size - 0.5, -0.5)
         ax.tick_params(labelleft=style.starts_row(ax))
         ax.set_title(label, loc="left")
         _show_differences(ax)
