@@ -283,9 +283,9 @@ def _show_differences(ax: Axes) -> None:
     if not ax.lines:
         style.empty(ax)
         return
-    drawn = scales.drawn(ax, "x")
-    scales.fit(ax, "x", drawn)
-    low, high = np.nanmin(drawn), np.nanmax(drawn)
+    points = scales.drawn(ax, "x")
+    scales.fit(ax, "x", points)
+    low, high = np.nanmin(points), np.nanmax(points)
     if high - low < _LEAST_RANGE * abs(high):
         ax.set_xlim(low - _LEAST_RANGE * abs(high), high + _LEAST_RANGE * abs(high))
 
