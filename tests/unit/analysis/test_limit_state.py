@@ -47,6 +47,11 @@ def test_a_process_that_is_wrong_costs_runs_but_adds_no_bias(monkeypatch):
     assert min(result.runs for result in results) > 600, "the process is right, after all"
     assert max(np.abs(errors / stated)) < 3
     assert abs(np.mean(errors)) < 3 * 0.1 / np.sqrt(len(results))
+    monkeypatch.undo()  # half of the runs that are allowed are placed, at most
+    options = SETTINGS | {"most": 160}
+    few = learned_estimate(lambda u: u[:, 0] + waves(u), 2, 2.5, seed=1, **options)
+    assert few.placed <= 80
+    assert few.runs <= 160
 
 
 def test_missing_runs_widen_the_interval_on_both_sides():

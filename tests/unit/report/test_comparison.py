@@ -56,7 +56,7 @@ def results(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def told(results):
-    """What the command says that compares three samples."""
+    """Return the output of the command that compares three samples."""
     return done("compare", *NAMES, "--output", "results/thirds", cwd=results.parent).stdout
 
 
