@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from chaos import assert_same_bits, complaint, run, stored
+from chaos import STUDY, assert_same_bits, complaint, new_study, resumed, run, stored
 
 pytestmark = pytest.mark.chaos
 
@@ -67,8 +67,11 @@ def test_results_that_cannot_be_written(folder, results):
     assert "solved before" not in command.said
 
 
-def test_no_folder_for_kernels(folder, undisturbed, monkeypatch):
+def test_no_folder_for_kernels(folder, monkeypatch):
     """Each process compiles its own, says so, and has the same bits."""
+    new_study(folder, STUDY.replace("base: paper", "base: paper, beam_model: rigid"))
+    undisturbed, _ = resumed(folder, "--workers", "1")
+    (folder / "results").rename(folder / "before")
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     nowhere = {"HOME": "/proc/nowhere", "XDG_CACHE_HOME": "/proc/nowhere"}
     command = run(folder, "--workers", "1", **nowhere)
