@@ -1,27 +1,17 @@
 """The JSON Schema accepts what the readers accept, and marks what an editor can."""
 
-import json
 from copy import deepcopy
 from functools import reduce
 from pathlib import Path
 
 import pytest
-from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
-from impactlab.study.schema.json_schema import study_schema
 from impactlab.study.schema.readers import study_of_content
 from impactlab.validation.errors import StudyError
 
 STUDIES = sorted((Path(__file__).parents[4] / "studies").glob("*.yaml"))
 VARIED = ("sampling", "parameters", "beam_yield_stress")
-
-
-@pytest.fixture(scope="module")
-def validator():
-    schema = json.loads(json.dumps(study_schema()))
-    Draft202012Validator.check_schema(schema)
-    return Draft202012Validator(schema)
 
 
 def content(name):
