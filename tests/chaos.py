@@ -130,7 +130,8 @@ def run(folder, *args, **env):
 
 def resumed(folder, *args):
     """Return runs.nc and the log of a last, undisturbed `impactlab run`, in this process."""
-    return stored(folder), done("run", "studies/tough.yaml", *args, cwd=folder).stderr
+    said = done("run", "studies/tough.yaml", *args, cwd=folder).stderr
+    return stored(folder), said
 
 
 def stored(folder):

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ruamel.yaml import YAML
 
 from impactlab.fem3d.wing import SIZES
 from impactlab.methods.grid import Grid
@@ -49,8 +50,10 @@ store: {histories: true, profiles: true, samples: 11}
 
 
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
-def test_committed_studies_are_sound(path):
+def test_committed_studies_are_sound(path, validator):
     study = read_any(path)
+    content = YAML(typ="safe").load(study.text)
+    assert [error.message for error in validator.iter_errors(content)] == []
     assert study.name == path.stem
     assert study.text == path.read_text(encoding="utf-8")
 

@@ -39,7 +39,7 @@ def times(factor):
 
 
 SAMPLE = il.Sobol(
-    base_samples=16, parameters={"velocity": il.Uniform(1, 2), "beam_depth": il.Uniform(0.02, 0.03)}
+    base_samples=8, parameters={"velocity": il.Uniform(1, 2), "beam_depth": il.Uniform(0.02, 0.03)}
 )
 PLANE = il.Sobol(base_samples=256, parameters={"a": il.Uniform(0, 1), "b": il.Uniform(0, 1)})
 
@@ -373,7 +373,7 @@ def test_functions_that_cannot_be_identified_are_refused_with_the_reason(respons
 
 def test_a_version_of_ones_own_takes_the_place_of_the_fingerprint():
     given = il.Function(lambda run: 0.0 if TABLE else 1.0, version="1")
-    assert impacts(responses={"own": given}).run(workers=1).own.values.tolist() == [0.0] * 96
+    assert impacts(responses={"own": given}).run(workers=1).own.values.tolist() == [0.0] * 48
 
 
 @pytest.mark.parametrize(
