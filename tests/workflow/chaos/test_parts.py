@@ -13,11 +13,11 @@ from chaos import PATIENCE, RUNS, assert_same_bits, complaint, keys_in, stored
 
 pytestmark = pytest.mark.chaos
 
-PARTS = 12
+PARTS = 8
 AT_ONCE = 4
-KILLED = 4
-TWICE = (3, 7)
-LOST = 9
+KILLED = 3
+TWICE = (3, 6)
+LOST = 7
 BEFORE_THE_END = 3.0
 """Seconds that a part takes at least, most of them to begin."""
 
