@@ -87,7 +87,7 @@ long: $(MADE)-dev
 	$(IN_VENV) python -m pytest -n auto -m long $(PYTEST_ARGS)
 
 chaos: $(MADE)-dev
-	$(IN_VENV) python -m pytest -n 2 --dist loadgroup -m chaos $(PYTEST_ARGS)
+	$(IN_VENV) python -m pytest -n 2 --dist worksteal -m chaos $(PYTEST_ARGS)
 
 kratos: $(MADE)-dev $(MADE)-kratos
 	$(IN_VENV) python -m pytest -m kratos $(PYTEST_ARGS)

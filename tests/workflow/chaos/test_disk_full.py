@@ -95,7 +95,7 @@ FEW = """
 title: Tough
 impact: {base: paper, beam_model: rigid}
 duration: 1 ms
-sampling: {method: grid, parameters: {velocity: [1, 2]}}
+sampling: {method: grid, parameters: {velocity: [1, 2, 3, 4]}}
 responses: [peak_force]
 """
 STEPS = [
