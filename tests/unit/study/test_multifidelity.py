@@ -166,29 +166,26 @@ def test_indices_are_those_of_the_slow_model(tmp_path):
     assert "Sobol indices of the slow model" in page
 
 
-def test_indices_are_refused_where_runs_have_no_answer_or_parameters_correlate(tmp_path):
+def test_pairs_without_an_answer_are_left_out_and_counted_and_have_no_indices(tmp_path):
     result = il.multifidelity(
         study(tmp_path, sometimes_failing), {"power": 2}, runs=500, indices=True, workers=1
     )
     assert result.slow_index.isnull().all()
     missing = int(result.slow.isnull().sum())
     assert f"no indices of the value: {missing} runs have no answer" in result.answer
+    assert result.missing.item() == missing > 0
+    left_out = f"are left out: these may be the extreme ones (up to {missing} a response)"
+    assert left_out in result.answer
+    assert "missing_runs" in result.verdict.attrs["flag_meanings"].split()[int(result.verdict)]
+
+
+def test_correlated_parameters_have_no_indices_of_a_slow_model(tmp_path):
     parameters = {"x": il.Uniform(0, 1), "noise": il.Normal(0, 1), "power": 1.7}
     sampling = il.Pawn(samples=128, parameters=parameters, correlations=[("x", "noise", 0.5)])
     with pytest.raises(il.StudyError, match="assume independent parameters"):
         il.multifidelity(
             study(tmp_path / "two", sampling=sampling), {"power": 2}, runs=500, indices=True
         )
-
-
-def test_pairs_without_an_answer_are_left_out_and_counted(tmp_path):
-    result = il.multifidelity(study(tmp_path, sometimes_failing), {"power": 2}, runs=500, workers=1)
-    missing = int(result.slow.isnull().sum())
-    assert result.missing.item() == missing > 0
-    assert f"are left out: these may be the extreme ones (up to {missing} a response)" in (
-        result.answer
-    )
-    assert "missing_runs" in result.verdict.attrs["flag_meanings"].split()[int(result.verdict)]
 
 
 def test_a_statistic_that_is_not_sound_is_refused_with_its_reason(tmp_path):

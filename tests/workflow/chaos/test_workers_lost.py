@@ -42,10 +42,10 @@ def test_every_process_killed_again_and_again(folder, undisturbed):
 
 
 @contextmanager
-def at_work(folder):
-    """A cluster of three workers, and a command that has solved some batches on it."""
+def at_work(folder, workers):
+    """A cluster, and a command that has solved some batches on it."""
     with Cluster(folder) as cluster:
-        cluster.add(3)
+        cluster.add(workers)
         command = run(folder, "--scheduler", cluster.address, *SMALL)
         command.wait_for_shards(3)
         yield cluster, command
@@ -53,7 +53,7 @@ def at_work(folder):
 
 def test_workers_of_a_cluster_killed(folder, undisturbed):
     """The others go on; without any it says so, and is interrupted while it waits."""
-    with at_work(folder) as (cluster, command):
+    with at_work(folder, workers=3) as (cluster, command):
         cluster.workers[0].kill()
         command.wait_for_shards(len(shards(folder)) + 5)
         for worker in cluster.workers:
@@ -65,7 +65,7 @@ def test_workers_of_a_cluster_killed(folder, undisturbed):
 
 
 def test_the_scheduler_killed(folder, undisturbed):
-    with at_work(folder) as (cluster, command):
+    with at_work(folder, workers=1) as (cluster, command):
         cluster.scheduler.kill()
         assert command.end() == 1, command.said
     assert "scheduler" in complaint(command.said)

@@ -11,7 +11,6 @@ from impactlab.analysis.measurements import Agreement
 from impactlab.figures import access, catalogue, labels
 from impactlab.report import measured
 from impactlab.report.study import write_report
-from impactlab.study import steps
 from impactlab.study.solvers.own import TASKS
 
 SCALE = 1.0
@@ -345,14 +344,6 @@ def test_stored_answers_are_those_of_the_very_function(monkeypatch):
         impacts(responses={"momentum": MOMENTUM}).run(workers=1)
     doubled = impacts(responses={"momentum": MOMENTUM}).run(workers=1, replace=True)
     assert doubled.momentum.values == pytest.approx(2 * first.momentum.values, nan_ok=True)
-
-
-def test_tidying_up_leaves_runs_of_functions_alone(folder):
-    impacts(responses={"momentum": MOMENTUM}).run(workers=1)
-    (folder / "studies").mkdir()
-    impacts().to_yaml("studies/other.yaml")
-    with steps.removable(folder / "studies", folder / "results") as found:
-        assert found == {}
 
 
 @pytest.mark.parametrize(
