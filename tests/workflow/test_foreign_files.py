@@ -68,7 +68,7 @@ def folder(path):
 
 def of_another_kind(path):
     kind = "analysis" if path.name == "runs.nc" else "runs"
-    shutil.copy(path.parents[1] / "small" / f"{kind}.nc", path)
+    shutil.copy(path.parents[1] / "other" / f"{kind}.nc", path)
 
 
 def edited(change):
@@ -183,7 +183,7 @@ def test_analyses_and_evidence_of_other_runs_are_refused(results):
     assert "sample/refinement.nc: was not made from sample/runs.nc" in ended.stderr
 
 
-def test_figures_of_other_results_are_refused(results):
+def test_figures_of_other_results_are_refused(results, blank_pictures):
     runs, path = (results / "small" / name for name in ("runs.nc", "analysis.nc"))
     done("figures", runs, path, cwd=results)
     captions = path.parent / "figures" / "captions.json"

@@ -20,6 +20,8 @@ from impactlab.study.adaptive import extension, recommendation
 from impactlab.study.schema.readers import read_study
 from impactlab.study.store import holder
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 GROWING = """
 title: Growing
 impact: {base: paper, beam_model: rigid}

@@ -12,6 +12,8 @@ from impactlab.report.answer import answers
 from impactlab.verification.catalogue import CATALOGUE
 from impactlab.verification.finding import Check, Comparisons, Finding
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 def test_checks_from_the_file_to_the_index(folder):
     said = impactlab("verify", "studies/checks.yaml", cwd=folder).stdout

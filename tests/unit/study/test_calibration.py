@@ -49,7 +49,9 @@ def study(tmp_path):
     )
 
 
-def test_known_parameters_are_recovered_and_confirmed_by_runs(study, monkeypatch, tmp_path):
+def test_known_parameters_are_recovered_and_confirmed_by_runs(
+    study, monkeypatch, tmp_path, blank_pictures
+):
     found = il.calibrate(study, values(), workers=1)
     for name, truth in TRUTH.items():
         one = found.sel(parameter=name)
@@ -118,7 +120,7 @@ def measured_square(**keys):
 
 
 @pytest.mark.parametrize(("low", "high", "count"), [(4, 7, 2), (5.5, 7, 1)])
-def test_two_roots_are_told_as_two_ranges(tmp_path, low, high, count):
+def test_two_roots_are_told_as_two_ranges(tmp_path, blank_pictures, low, high, count):
     ranges = {"start": il.Uniform(low, high), "time": il.Uniform(0, 3)}
     sampling = il.Pawn(samples=200, parameters=ranges)
     study = il.Study(title="Square", function=square, sampling=sampling, results=tmp_path)
@@ -160,7 +162,7 @@ def test_a_single_parameter_is_sampled_reported_and_calibrated(tmp_path, method)
     assert found["posterior_deviation"].item() == pytest.approx(0.025, rel=0.05)
 
 
-def test_a_measured_zero_has_finite_differences(tmp_path):
+def test_a_measured_zero_has_finite_differences(tmp_path, blank_pictures):
     sampling = il.Pawn(samples=200, parameters={"start": il.Uniform(5, 7)})
     study = il.Study(
         title="Zero", function=lambda start: start - 6, sampling=sampling, results=tmp_path

@@ -10,6 +10,8 @@ import impactlab as il
 from impactlab.fem3d.solver import solve
 from impactlab.study.schema.readers import describe
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 def power_of(x, noise, power):
     return (1 + x) ** power + 0.1 * noise

@@ -10,6 +10,8 @@ from scipy.stats import norm
 import impactlab as il
 from impactlab.study import engine
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 def load_minus_strength(load, strength):
     return load - strength

@@ -10,6 +10,8 @@ from impactlab.study.engine import Engine
 from impactlab.study.rare_event import LimitRuns
 from impactlab.study.sizing import sizing
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 def stress_minus_strength(load, strength, area):
     return load / area - strength
@@ -35,7 +37,8 @@ def exact_area(wanted):
     return brentq(excess, 1, 3)
 
 
-SETTINGS = {"probability": 1e-3, "minimise": "area"}
+PROBABILITY = 0.01
+SETTINGS = {"probability": PROBABILITY, "minimise": "area"}
 
 
 @pytest.fixture(scope="module")
@@ -52,8 +55,8 @@ def test_the_least_area_is_found_with_the_same_bits_for_any_number_of_workers(si
     np.testing.assert_array_equal(first.area, other.area)
     np.testing.assert_array_equal(first.front_objective, other.front_objective)
     chosen, low, high = first.area.values
-    assert low <= exact_area(1e-3) <= high
-    assert exact_area(1e-3) <= chosen < 1.03 * exact_area(1e-3)
+    assert low <= exact_area(PROBABILITY) <= high
+    assert exact_area(PROBABILITY) <= chosen < 1.03 * exact_area(PROBABILITY)
     headline, probability, least = first.answer.splitlines()
     assert headline.startswith("The design of least area for which the value exceeds 0")
     for line in (headline, probability.partition(": ")[2], least.partition(": ")[2]):
@@ -69,7 +72,9 @@ def test_correlations_count_but_not_with_what_is_chosen(tmp_path):
             sampling=sampling,
         )  # fmt: skip
 
-    result = il.size(of(("load", "strength")), ["area"], **SETTINGS, workers=1)
+    result = il.size(
+        of(("load", "strength")), ["area"], probability=1e-3, minimise="area", workers=1
+    )
     linear = 2 * np.sin(np.pi * -0.7 / 6)
 
     def excess(area):
@@ -180,9 +185,9 @@ def test_a_numerical_error_is_stated_and_may_take_the_design(sized, monkeypatch,
     """An error of the load's scatter moves the probability as that of a strength would."""
     rod, plain, _ = sized
     assert "Numerical error" not in plain.answer
-    area, spare = plain.area.item(0), 1e-3 / plain.probability.item(0)
+    area, spare = plain.area.item(0), PROBABILITY / plain.probability.item(0)
     deviation = np.hypot(1 / area, 0.5)
-    error = factor * deviation * (norm.isf(plain.probability.item(0)) - norm.isf(1e-3))
+    error = factor * deviation * (norm.isf(plain.probability.item(0)) - norm.isf(PROBABILITY))
     monkeypatch.setattr(LimitRuns, "numerical_error", lambda self, scores: error)
     result = il.size(rod, ["area"], **SETTINGS, workers=1)
     np.testing.assert_array_equal(result.area, plain.area)  # of the runs that are stored

@@ -82,7 +82,9 @@ def test_indices_without_units_are_those_of_python_to_the_last_bit(tmp_path, col
         np.testing.assert_array_equal(found[name], expected[name], err_msg=str(name))
 
 
-def test_go_gives_results_and_a_report_that_speaks_of_rows(tmp_path, columns, monkeypatch, capsys):
+def test_go_gives_results_and_a_report_that_speaks_of_rows(
+    tmp_path, columns, monkeypatch, capsys, blank_pictures
+):
     columns["dent"][:] = 5 * columns["speed"] + columns["gap"]
     columns["dent"][4] = np.nan
     text = TEXT.replace("[delta, pawn]", "[rbd_fast]").replace("  metal:\n", "")
