@@ -41,6 +41,7 @@ responses: [peak_force]
 EXCEEDANCE = """
 title: Exceedance
 impact: {base: paper, beam_model: rigid}
+discretisation: {nodes: 21}
 duration: 0.4 ms
 sampling:
   method: pawn
@@ -159,7 +160,7 @@ def test_two_models_are_printed_and_reported(folder):
     (folder / "studies" / "exceedance.yaml").write_text(EXCEEDANCE)
     command = "multifidelity", "studies/exceedance.yaml"
     answer, *_, page = impactlab(
-        *command, "beam_model=euler_bernoulli", "nodes=41", "--budget", "1 s", cwd=folder
+        *command, "beam_model=euler_bernoulli", "nodes=41", "--budget", "0.3 s", cwd=folder
     ).stdout.splitlines()
     assert page == "results/exceedance/multifidelity.html"
     assert answer.startswith("With beam_model euler_bernoulli, nodes 41, the peak force is ")
