@@ -4,7 +4,7 @@
 # make all     every study, the large ones too, and the paper (one to two hours)
 # make test    the checks, and the tests of up to a minute
 # make long    the tests that take longer: the 3-D model and its decks on finer meshes
-# make chaos   what crashes, full disks, lost workers and hostile files must not do (10 minutes)
+# make chaos   what crashes, full disks, lost workers and hostile files must not do (4 minutes)
 # make kratos  the 3-D model against Kratos Multiphysics, in a coarse case (2 minutes)
 # make oldest  quick unit tests with the lowest versions that pyproject.toml allows (2 minutes)
 # make docs    the site, in site/index.html: its notebooks and small studies are solved (6 minutes)
@@ -90,7 +90,7 @@ long: $(MADE)-dev
 	$(IN_VENV) python -m pytest -n auto -m long $(PYTEST_ARGS)
 
 chaos: $(MADE)-dev
-	$(IN_VENV) python -m pytest -n 2 --dist loadgroup -m chaos $(PYTEST_ARGS)
+	$(IN_VENV) python -m pytest -n 2 --dist worksteal -m chaos $(PYTEST_ARGS)
 
 kratos: $(MADE)-dev $(MADE)-kratos
 	$(IN_VENV) python -m pytest -m kratos $(PYTEST_ARGS)

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import psutil
 import xarray as xr
+from command_line import done
 
 STUDY = """
 title: Tough
@@ -128,10 +129,9 @@ def run(folder, *args, **env):
 
 
 def resumed(folder, *args):
-    """Return runs.nc and the output of a last, undisturbed `impactlab run`."""
-    command = run(folder, *args)
-    assert command.end() == 0, command.said
-    return stored(folder), command.said
+    """Return runs.nc and the log of a last, undisturbed `impactlab run`, in this process."""
+    said = done("run", "studies/tough.yaml", *args, cwd=folder).stderr
+    return stored(folder), said
 
 
 def stored(folder):

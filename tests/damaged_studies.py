@@ -37,8 +37,7 @@ VALID = {
     + f"sampling: {{method: morris, trajectories: 8, levels: 4, {_ENDS},"
     + " groups: {a: [velocity], b: [gravity]}}\n",
     "fast": _HEAD + f"sampling: {{method: fast, samples: 900, harmonics: 4, {_PAIR}}}\n",
-    "delta": _HEAD + f"sampling: {{method: delta, samples: 64, seed: 3, {_PAIR}}}\n",
-    "pawn": _HEAD + f"sampling: {{method: pawn, samples: 100, {_PAIR}}}\n",
+    "pawn": _HEAD + f"sampling: {{method: pawn, samples: 100, seed: 3, {_PAIR}}}\n",
     "regression": _HEAD
     + f"sampling: {{method: regression, samples: 64, {_ENDS}}}\nanalyses: [surrogate]\n",
     "auto": _HEAD

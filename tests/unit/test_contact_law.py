@@ -3,6 +3,7 @@
 import pickle
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from textwrap import dedent
 
@@ -58,7 +59,9 @@ def own(curve=hertz, name="own", **stated):
 
 
 def answers(contact):
-    run = il.simulate(il.paper_impact(1.0, contact), GRID, duration=1e-3, samples=2)
+    """Return two answers of a lumped beam, whose kernel compiles soonest."""
+    impact = replace(il.paper_impact(1.0, contact), beam_model="spring_mass")
+    run = il.simulate(impact, duration=1e-3, samples=2)
     assert run.contact.attrs.get("origin", "").endswith(getattr(contact, "source_hash", ""))
     return run.peak_force.item(), run.restitution.item()
 

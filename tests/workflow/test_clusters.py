@@ -7,6 +7,7 @@ from contextlib import ExitStack
 import pytest
 import xarray as xr
 from cluster import Cluster
+from command_line import done
 from command_line import process as impactlab
 
 STUDY = """
@@ -42,14 +43,16 @@ def folder(tmp_path):
 
 @pytest.fixture(scope="module")
 def in_threads(tmp_path_factory):
-    """The runs, solved in threads."""
-    return solved(new_study(tmp_path_factory.mktemp("threads")))
+    """The runs, solved in threads of this process."""
+    folder = new_study(tmp_path_factory.mktemp("threads"))
+    done("run", "studies/spread.yaml", cwd=folder)
+    return xr.load_dataset(folder / "results" / "spread" / "runs.nc").drop_attrs()
 
 
 def solved(folder, *options, env=None):
-    done = impactlab("run", "studies/spread.yaml", *options, cwd=folder, env=env)
-    assert done.returncode == 0, done.stderr
-    assert "200 runs, 0 of them solved before" in done.stderr
+    ended = impactlab("run", "studies/spread.yaml", *options, cwd=folder, env=env)
+    assert ended.returncode == 0, ended.stderr
+    assert "200 runs, 0 of them solved before" in ended.stderr
     runs = folder / "results" / "spread" / "runs.nc"
     return xr.load_dataset(runs).drop_attrs()
 

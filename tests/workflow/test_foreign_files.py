@@ -68,7 +68,7 @@ def folder(path):
 
 def of_another_kind(path):
     kind = "analysis" if path.name == "runs.nc" else "runs"
-    shutil.copy(path.parents[1] / "small" / f"{kind}.nc", path)
+    shutil.copy(path.parents[1] / "other" / f"{kind}.nc", path)
 
 
 def edited(change):
@@ -143,6 +143,15 @@ COMMANDS = [
 
 
 @pytest.mark.parametrize("damage", DAMAGES, ids=lambda damage: damage.__name__)
+def test_no_kind_of_file_is_read(results, damage):
+    for name in sorted({name for _, name in COMMANDS}):
+        kind = xr.load_dataset(results / name).attrs["content"]
+        damage(results / name)
+        with pytest.raises((OSError, ValueError), match=name):
+            read_netcdf(results / name, kind)
+
+
+@pytest.mark.parametrize("damage", [tripled, of_another_kind], ids=lambda damage: damage.__name__)
 @pytest.mark.parametrize(("command", "name"), COMMANDS)
 def test_no_command_takes_them(results, command, name, damage):
     damage(results / name)
@@ -154,32 +163,29 @@ def test_no_command_takes_them(results, command, name, damage):
     assert sorted(results.rglob("*")) == before
 
 
-@pytest.mark.parametrize("step", ["figures", "report"])
-def test_analyses_of_other_runs_are_refused(results, step):
+def test_analyses_and_evidence_of_other_runs_are_refused(results):
     """Runs that were solved again since are other runs, too."""
-    ended = called(step, "small/runs.nc", "other/analysis.nc", cwd=results)
+    for step in ("figures", "report"):
+        ended = called(step, "small/runs.nc", "other/analysis.nc", cwd=results)
+        assert ended.returncode
+        assert "other/analysis.nc: was not made from small/runs.nc" in ended.stderr
+    for name in ("small", "sample"):
+        runs = read_netcdf(results / name / "runs.nc", "runs")
+        changed = runs.assign(peak_force=3 * runs["peak_force"])
+        write_netcdf(changed, results / name / "runs.nc", "runs")
+    for step in ("figures", "report"):
+        ended = called(step, *PAIR.split(), cwd=results)
+        assert ended.returncode
+        assert "`impactlab analyse small/runs.nc`" in ended.stderr
+    evidence = ("--refinement", "sample/refinement.nc")
+    ended = called("analyse", "sample/runs.nc", *evidence, cwd=results)
     assert ended.returncode
-    assert "other/analysis.nc: was not made from small/runs.nc" in ended.stderr
-    runs = xr.load_dataset(results / "small" / "runs.nc")
-    write_netcdf(runs.assign(peak_force=3 * runs["peak_force"]), results / "small/runs.nc", "runs")
-    ended = called(step, *PAIR.split(), cwd=results)
-    assert ended.returncode
-    assert "`impactlab analyse small/runs.nc`" in ended.stderr
+    assert "sample/refinement.nc: was not made from sample/runs.nc" in ended.stderr
 
 
-def test_evidence_of_other_runs_is_refused(results):
-    runs = read_netcdf(results / "sample" / "runs.nc", "runs")
-    write_netcdf(runs.assign(peak_force=3 * runs["peak_force"]), results / "other.nc", "runs")
-    args = "analyse other.nc --refinement sample/refinement.nc"
-    ended = called(*args.split(), cwd=results)
-    assert ended.returncode
-    assert "sample/refinement.nc: was not made from other.nc" in ended.stderr
-
-
-def test_figures_of_other_results_are_refused(results):
+def test_figures_of_other_results_are_refused(results, blank_pictures):
     runs, path = (results / "small" / name for name in ("runs.nc", "analysis.nc"))
     done("figures", runs, path, cwd=results)
-    done("report", runs, path, cwd=results)
     captions = path.parent / "figures" / "captions.json"
     sound = captions.read_text()
     for hostile in ("[]", "{", '{"../../other": {}}', '{"a": 1}'):

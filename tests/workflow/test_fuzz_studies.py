@@ -19,8 +19,8 @@ from impactlab.validation.errors import StudyError
 
 SECONDS = 20
 ROOM = 1 << 30
-FEW, MANY = 30, 1800
-"""Files of a kind: 12 kinds."""
+FEW, MANY = 20, 600
+"""Files of a kind: 11 kinds."""
 _DRAWN = 2000
 """Runs of a study that is drawn, at most: the samplers are not what is tested."""
 _WHOLE_FILE = re.compile(

@@ -1,8 +1,5 @@
 """The command line on finished runs: their status, and their removal."""
 
-import subprocess
-import sys
-
 import pytest
 from command_line import called as impactlab
 
@@ -61,28 +58,3 @@ def test_clean_takes_the_folder_of_studies_that_lie_elsewhere(folder):
     assert done.returncode == 1
     assert "no study files" in done.stderr
     assert list(folder.glob("results/small/shards/*/*.npz"))
-
-
-HOLD = """
-import sys
-from pathlib import Path
-from impactlab.study.store import locked
-with locked(Path("results/small/shards")):
-    print("held", flush=True)
-    sys.stdin.read()
-"""
-
-
-def test_a_second_process_on_a_study_says_so(folder):
-    command = [sys.executable, "-c", HOLD]
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-    with subprocess.Popen(command, cwd=folder, **pipes) as first:
-        assert first.stdout.readline() == "held\n"
-        second = impactlab("run", "studies/small.yaml", cwd=folder)
-        assert second.returncode == 1
-        assert f"process {first.pid} on " in second.stderr
-        assert "Traceback" not in second.stderr
-        told = impactlab("status", "studies/small.yaml", cwd=folder).stdout
-        assert f"process {first.pid}" in told
-        first.stdin.close()
-    assert impactlab("run", "studies/small.yaml", cwd=folder).returncode == 0

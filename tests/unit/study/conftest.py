@@ -1,10 +1,11 @@
-"""A small design and its requested output."""
+"""A small design and its requested output; reports without figures."""
 
 import pytest
 import xarray as xr
 
 import impactlab as il
 from impactlab.model.parameters import flatten
+from impactlab.report.study import write_report
 
 
 @pytest.fixture
@@ -26,3 +27,16 @@ def small_design():
         return xr.Dataset(coords=coords, attrs=asked | attrs)
 
     return made
+
+
+@pytest.fixture
+def page_of():
+    """Return a function that solves and reports a study without figures, which take seconds."""
+
+    def page(study, **options):
+        runs, file = study.run(workers=1, **options), study.folder / "report.html"
+        (study.folder / "captions.json").write_text("{}")
+        write_report(runs, study.analyse(), study.folder, file)
+        return file.read_text("utf-8").replace("\xa0", " ")
+
+    return page

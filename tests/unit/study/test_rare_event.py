@@ -10,6 +10,8 @@ from scipy.stats import norm
 import impactlab as il
 from impactlab.study import engine
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 def load_minus_strength(load, strength):
     return load - strength
@@ -43,14 +45,14 @@ def test_runs_are_kept_and_give_the_same_bits_for_any_number_of_workers(tmp_path
     assert page.count("<figure") == 1
 
 
-def test_a_study_places_runs_until_its_probability_is_known(tmp_path):
+def test_a_study_places_runs_until_its_probability_is_known(tmp_path, page_of):
     until = {"coefficient_of_variation": 0.1, "runs": 700}
     parameters = {"load": il.Normal(5, 1), "strength": il.Normal(11, 1)}
     plain = study(tmp_path / "plain")
     sampling = il.Pawn(samples=128, parameters=parameters, until=until)
     grown = study(tmp_path / "grown", sampling=sampling)
     assert grown.run(workers=1).sizes["run"] == 128
-    page = grown.report().read_text("utf-8").replace("\xa0", " ")
+    page = page_of(grown)
     result = il.rare_event(plain, surrogate=True, runs=700, workers=2)
     headline = result.answer.splitlines()[0].removesuffix(".")
     assert page.index(headline) < page.index("The likeliest way") < page.index("The sample alone")
@@ -94,7 +96,7 @@ def test_words_are_drawn_with_their_weights(tmp_path):
     assert np.isnan(rare.first_order), "no plane lies along words"
 
 
-def test_a_process_places_the_same_runs_for_any_number_of_workers(tmp_path):
+def test_a_process_places_the_same_runs_for_any_number_of_workers(tmp_path, page_of):
     first = il.rare_event(study(tmp_path / "one"), surrogate=True, workers=1)
     stored = sorted((tmp_path / "one" / "load" / "rare_event").rglob("*.npz"))
     assert stored
@@ -107,18 +109,12 @@ def test_a_process_places_the_same_runs_for_any_number_of_workers(tmp_path):
     assert first.runs < 400
     assert "for a Gaussian process" in first.answer
     assert first.attrs["arguments"] == " --surrogate"
-
-
-def test_the_report_of_the_study_tells_the_answer(tmp_path):
-    limited = study(tmp_path)
-    limited.run(workers=1)
-    answer = il.rare_event(limited, surrogate=True, workers=1).answer.splitlines()[0]
-    page = limited.report().read_text("utf-8").replace("\xa0", " ")
-    assert f"Rare event:</strong> {answer.removesuffix('.')} (<a" in page
+    # the report of the study tells the answer
+    page = page_of(study(tmp_path / "one"))
+    answer = first.answer.splitlines()[0].removesuffix(".")
+    assert f"Rare event:</strong> {answer} (<a" in page
     assert 'href="rare_event.html"' in page
-    changed = study(tmp_path, limits={"value": 1})
-    changed.run(workers=1, replace=True)
-    page = changed.report().read_text("utf-8")
+    page = page_of(study(tmp_path / "one", limits={"value": 1}), replace=True)
     assert "of an earlier text of this study, not of these runs (<a" in page
 
 

@@ -128,23 +128,6 @@ def test_strikes_without_growth_have_indices_where_every_run_has_one(tmp_path, f
     assert np.isnan(found.total_order).all().item() is missing
 
 
-def test_functions_beside_strikes_without_growth_leave_their_status(tmp_path):
-    responses = {"mine": dent_of_last, "steady_strike": "steady_strike"}
-    study = il.Study(
-        title="Mine",
-        impact=IMPACT,
-        discretisation=GRID,
-        duration="15 ms",
-        sampling=il.Grid(parameters={"strikes": [1, 3]}),
-        responses=responses,
-        results=tmp_path,
-    )
-    runs = study.run(workers=1)
-    assert np.isnan(runs.steady_strike).all()
-    assert (runs.status == STATUS_FLAGS["not_steady"][0]).all()
-    assert np.isfinite(runs.mine).all()
-
-
 def test_strikes_without_growth_need_strikes_and_no_values_made_up(tmp_path):
     with pytest.raises(il.StudyError, match="responses: steady_strike needs several strikes"):
         il.Study(
@@ -158,13 +141,6 @@ def test_strikes_without_growth_need_strikes_and_no_values_made_up(tmp_path):
     analysis = {"failed_runs": "impute"}
     with pytest.raises(il.StudyError, match="failed_runs: a run without shakedown_strike has it"):
         growth_sample(tmp_path, (0.4, 1.0), ["shakedown_strike"], analysis=analysis)
-
-
-def test_tables_keep_one_row_per_run(strikes):
-    runs, _ = strikes
-    table = il.table(runs)
-    assert len(table) == 6
-    assert np.isfinite(table["steady_strike"]).sum() == 1
 
 
 def test_the_figure_shows_the_longest_runs(strikes):
@@ -212,17 +188,20 @@ def dent_of_last(run):
     return run.permanent_indentation_over_strikes.isel(strike=run.strikes.item() - 1)
 
 
-def test_functions_of_the_user_see_the_series_of_the_study(tmp_path):
+def test_functions_of_the_user_see_the_series_of_the_study_and_leave_its_status(tmp_path):
+    names = ("permanent_indentation", "steady_strike")
     study = il.Study(
         title="Mine",
         impact=IMPACT,
         discretisation=GRID,
         duration="15 ms",
         sampling=il.Grid(parameters={"strikes": [1, 3]}),
-        responses={"mine": dent_of_last, "permanent_indentation": "permanent_indentation"},
+        responses={"mine": dent_of_last} | {name: name for name in names},
         results=tmp_path,
     )
     runs = study.run(workers=1)
+    assert np.isnan(runs.steady_strike).all()
+    assert (runs.status == STATUS_FLAGS["not_steady"][0]).all()
     assert runs.mine.values.tolist() == runs.permanent_indentation.values.tolist()
     assert np.isfinite(runs.mine).all()
     assert np.isfinite(runs.peak_force_over_strikes).sum("strike").values.tolist() == [1, 3]
@@ -301,8 +280,11 @@ def test_an_interval_after_the_only_strike_is_refused():
     assert design(study.declared).attrs["most_strikes"] == 2
 
 
-def test_comparisons_leave_the_series_out_of_their_dimensions(strikes):
+def test_tables_and_comparisons_leave_the_series_out_of_their_dimensions(strikes):
     runs, _ = strikes
+    table = il.table(runs)
+    assert len(table) == 6
+    assert np.isfinite(table["steady_strike"]).sum() == 1
     fewer = runs.isel(strikes=[1], strike=slice(0, 1))
     common = on_common_dimensions([runs, fewer])
     assert [access.design_dims(each) for each in common] == [["strikes", "velocity"]] * 2

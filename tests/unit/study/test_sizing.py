@@ -10,6 +10,8 @@ from impactlab.study.engine import Engine
 from impactlab.study.rare_event import LimitRuns
 from impactlab.study.sizing import sizing
 
+pytestmark = pytest.mark.usefixtures("blank_pictures")
+
 
 def stress_minus_strength(load, strength, area):
     return load / area - strength
@@ -35,19 +37,28 @@ def exact_area(wanted):
     return brentq(excess, 1, 3)
 
 
-def test_the_least_area_is_found_with_the_same_bits_for_any_number_of_workers(tmp_path):
-    first = il.size(study(tmp_path / "one"), ["area"], probability=1e-3, minimise="area", workers=1)
-    other = il.size(study(tmp_path / "two"), ["area"], probability=1e-3, minimise="area", workers=2)
-    again = il.size(study(tmp_path / "one"), ["area"], probability=1e-3, minimise="area", workers=1)
-    for result in (other, again):
-        np.testing.assert_array_equal(first.area, result.area)
-        np.testing.assert_array_equal(first.front_objective, result.front_objective)
+PROBABILITY = 0.01
+SETTINGS = {"probability": PROBABILITY, "minimise": "area"}
+
+
+@pytest.fixture(scope="module")
+def sized(tmp_path_factory):
+    """The rod, its least area and the page of it."""
+    rod = study(tmp_path_factory.mktemp("rod"))
+    result = il.size(rod, ["area"], **SETTINGS, workers=1)
+    return rod, result, (rod.folder / "sizing.html").read_text("utf-8")
+
+
+def test_the_least_area_is_found_with_the_same_bits_for_any_number_of_workers(sized, tmp_path):
+    _, first, page = sized
+    other = il.size(study(tmp_path), ["area"], **SETTINGS, workers=2)
+    np.testing.assert_array_equal(first.area, other.area)
+    np.testing.assert_array_equal(first.front_objective, other.front_objective)
     chosen, low, high = first.area.values
-    assert low <= exact_area(1e-3) <= high
-    assert exact_area(1e-3) <= chosen < 1.03 * exact_area(1e-3)
+    assert low <= exact_area(PROBABILITY) <= high
+    assert exact_area(PROBABILITY) <= chosen < 1.03 * exact_area(PROBABILITY)
     headline, probability, least = first.answer.splitlines()
     assert headline.startswith("The design of least area for which the value exceeds 0")
-    page = (tmp_path / "one" / "rod" / "sizing.html").read_text("utf-8")
     for line in (headline, probability.partition(": ")[2], least.partition(": ")[2]):
         assert line.removesuffix(".") in page.replace("\xa0", " ")
     assert page.count("<figure") == 1
@@ -61,8 +72,9 @@ def test_correlations_count_but_not_with_what_is_chosen(tmp_path):
             sampling=sampling,
         )  # fmt: skip
 
-    settings = {"probability": 1e-3, "minimise": "area", "workers": 1}
-    result = il.size(of(("load", "strength")), ["area"], **settings)
+    result = il.size(
+        of(("load", "strength")), ["area"], probability=1e-3, minimise="area", workers=1
+    )
     linear = 2 * np.sin(np.pi * -0.7 / 6)
 
     def excess(area):
@@ -73,7 +85,7 @@ def test_correlations_count_but_not_with_what_is_chosen(tmp_path):
     assert exact > 1.05 * exact_area(1e-3)
     assert exact <= result.area[0] < 1.03 * exact
     with pytest.raises(ValueError, match="area is chosen, and so cannot correlate with load"):
-        il.size(of(("load", "area")), ["area"], **settings)
+        il.size(of(("load", "area")), ["area"], **SETTINGS, workers=1)
 
 
 def test_the_greatest_load_is_the_one_with_the_probability(tmp_path):
@@ -169,17 +181,16 @@ def test_studies_without_a_sample_are_refused(tmp_path):
 
 
 @pytest.mark.parametrize("factor", [0.2, 5.0])
-def test_a_numerical_error_is_stated_and_may_take_the_design(tmp_path, monkeypatch, factor):
+def test_a_numerical_error_is_stated_and_may_take_the_design(sized, monkeypatch, factor):
     """An error of the load's scatter moves the probability as that of a strength would."""
-    rod = study(tmp_path)
-    settings = {"probability": 1e-3, "minimise": "area", "workers": 1}
-    plain = il.size(rod, ["area"], **settings)
+    rod, plain, _ = sized
     assert "Numerical error" not in plain.answer
-    area, spare = plain.area.item(0), 1e-3 / plain.probability.item(0)
+    area, spare = plain.area.item(0), PROBABILITY / plain.probability.item(0)
     deviation = np.hypot(1 / area, 0.5)
-    error = factor * deviation * (norm.isf(plain.probability.item(0)) - norm.isf(1e-3))
+    error = factor * deviation * (norm.isf(plain.probability.item(0)) - norm.isf(PROBABILITY))
     monkeypatch.setattr(LimitRuns, "numerical_error", lambda self, scores: error)
-    result = il.size(rod, ["area"], **settings)
+    result = il.size(rod, ["area"], **SETTINGS, workers=1)
+    np.testing.assert_array_equal(result.area, plain.area)  # of the runs that are stored
     index = (6 - 5 / area) / deviation
     exact = norm.sf([index + error / deviation, index - error / deviation])
     np.testing.assert_allclose(result.numerical_probability, exact, rtol=0.25)

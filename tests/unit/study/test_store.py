@@ -129,6 +129,19 @@ def test_damaged_shards_are_named_and_set_aside(shards, damage, caplog):
     assert shard_files(shards.folder) == [other]
 
 
+def test_a_flipped_bit_changes_no_answer_wherever_it_is(shards):
+    """The shard is as good as before, or damaged, and never a crash."""
+    keys, columns, path = written(shards, cases(0.5))
+    whole = path.read_bytes()
+    for place in range(0, len(whole), 29):
+        content = bytearray(whole)
+        content[place] ^= 1 << place % 8
+        path.write_bytes(content)
+        for found, read in shards.read():
+            assert found.tobytes() == keys.tobytes()
+            assert all(read[name].tobytes() == columns[name].tobytes() for name in columns)
+
+
 def test_a_shard_of_another_folder_is_found_out(shards, tmp_path, caplog):
     *_, path = written(shards, cases(0.5))
     for form in ((OUTPUT, "another version"), (OutputSpec(samples=0, profiles=False), VERSION)):

@@ -3,8 +3,10 @@
 import json
 
 import pytest
+from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
+from impactlab.study.schema.json_schema import study_schema
 from impactlab.study.schema.readers import read_study
 from impactlab.validation.errors import StudyError
 
@@ -40,6 +42,14 @@ def changed(text, changes):
             node = node.setdefault(step, {})
         node[last] = value
     return json.dumps(data).replace("NaN", ".nan")
+
+
+@pytest.fixture(scope="session")
+def validator():
+    """The JSON Schema of study files."""
+    schema = json.loads(json.dumps(study_schema()))
+    Draft202012Validator.check_schema(schema)
+    return Draft202012Validator(schema)
 
 
 @pytest.fixture

@@ -22,20 +22,23 @@ def test_more_runs_than_possible_are_refused(refused, grid, sample):
     refused(sample({"sampling.base_samples": 2**29}), "sampling", f"{2**29 * 6:,} runs")
 
 
-@pytest.mark.parametrize("name", ["nodes", "points", "rule", "beam_span", "beam_depth"])
-def test_profiles_need_one_mesh(refused, read, grid, name):
-    value = flatten(paper_impact(), Discretisation())[name]
-    varied = {"sampling.parameters": {name: [value]}}
-    text = grid(varied | {"store.profiles": True})
-    refused(text, f"sampling.parameters.{name}", "would differ between runs")
-    read(grid(varied | {"store.profiles": False}))
+BOX = {"shape": "box", "width": "27.8 mm", "wall_thickness": "4 mm"}
 
 
-@pytest.mark.parametrize("name", ["beam_wall_thickness", "beam_shape", "beam_width"])
-def test_profiles_need_one_section(refused, read, grid, name):
-    box = {"shape": "box", "width": "27.8 mm", "wall_thickness": "4 mm"}
-    values = {"beam_wall_thickness": 0.004, "beam_shape": "tube", "beam_width": 0.0278}
-    varied = {"sampling.parameters": {name: [values[name]]}, "impact.beam": box}
+@pytest.mark.parametrize(
+    ("name", "value", "beam"),
+    [
+        *(
+            (name, flatten(paper_impact(), Discretisation())[name], {})
+            for name in ("nodes", "points", "rule", "beam_span", "beam_depth")
+        ),
+        ("beam_wall_thickness", 0.004, BOX),
+        ("beam_shape", "tube", BOX),
+        ("beam_width", 0.0278, BOX),
+    ],
+)
+def test_profiles_need_one_mesh_and_section(refused, read, grid, name, value, beam):
+    varied = {"sampling.parameters": {name: [value]}, "impact.beam": beam}
     text = grid(varied | {"store.profiles": True})
     refused(text, f"sampling.parameters.{name}", "would differ between runs")
     read(grid(varied | {"store.profiles": False}))

@@ -1,37 +1,17 @@
-"""The JSON Schema accepts what the readers accept, and marks what an editor can."""
+"""The JSON Schema marks the mistakes that an editor can."""
 
-import json
 from copy import deepcopy
 from functools import reduce
 from pathlib import Path
 
 import pytest
-from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
-from impactlab.study.schema.json_schema import study_schema
 from impactlab.study.schema.readers import study_of_content
 from impactlab.validation.errors import StudyError
 
-STUDIES = sorted((Path(__file__).parents[4] / "studies").glob("*.yaml"))
+SOBOL = Path(__file__).parents[4] / "studies" / "sobol.yaml"
 VARIED = ("sampling", "parameters", "beam_yield_stress")
-
-
-@pytest.fixture(scope="module")
-def validator():
-    schema = json.loads(json.dumps(study_schema()))
-    Draft202012Validator.check_schema(schema)
-    return Draft202012Validator(schema)
-
-
-def content(name):
-    path = next(path for path in STUDIES if path.stem == name)
-    return YAML(typ="safe").load(path.read_text(encoding="utf-8"))
-
-
-@pytest.mark.parametrize("name", [path.stem for path in STUDIES])
-def test_every_shipped_study_is_accepted(validator, name):
-    assert [error.message for error in validator.iter_errors(content(name))] == []
 
 
 @pytest.mark.parametrize(
@@ -54,7 +34,7 @@ def test_every_shipped_study_is_accepted(validator, name):
     ],
 )
 def test_a_mistake_is_marked_that_the_reader_refuses(validator, path, value):
-    study = content("sobol")
+    study = YAML(typ="safe").load(SOBOL)
     *above, key = path
     reduce(lambda node, step: node[step], above, study)[key] = value
     assert list(validator.iter_errors(study))

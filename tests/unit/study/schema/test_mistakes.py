@@ -1,4 +1,3 @@
-import math
 import re
 
 import pytest
@@ -18,20 +17,14 @@ WRONG_IN_GRID = [
     ("impact.velocity", True, "expected a velocity"),
     ("impact.velocity", None, "expected a velocity"),
     ("impact.velocity", -1, "must be above zero"),
-    ("impact.gravity", math.nan, "must be finite"),
     ("impact.contact", "herz", "unknown contact law; did you mean 'hertz'?"),
-    ("impact.sphere.mass", 0, "must be above zero"),
     ("impact.sphere.material.isotropic_hardening_modulus", 1, "unknown key"),
-    ("impact.beam.material.poissons_ratio", 0.5, "below 0.5"),
     ("impact.beam.material.yeild_stress", 1, "did you mean 'yield_stress'?"),
     ("impact.beam.material.yield_stress", "345 GPa", "must be below youngs_modulus"),
     ("impact.beam.depth", "780 mm", "must be below the span"),
     ("discretisation.nodes", 200, "must be odd"),
-    ("discretisation.nodes", 3, "at least 5"),
     ("discretisation.nodes", 20.5, "expected a whole number"),
-    ("discretisation.points", 1, "at least 2"),
     ("discretisation.rule", "gauss", "unknown integration rule; choose from lobatto"),
-    ("discretisation.courant", 1.1, "must be in (0, 1]"),
     ("sampling", [], "expected a mapping with the key method"),
     ("sampling.method", "gird", "unknown method; did you mean 'grid'?"),
     ("sampling.seed", 1, "unknown key; choose from method, parameters"),

@@ -51,11 +51,6 @@ def test_every_method_is_counted():
     assert {method for method, *_ in RUNS} | {"grid"} >= METHODS.keys() - from_given_data
 
 
-@pytest.mark.parametrize(("method", "given", "key", "words"), WRONG)
-def test_a_mistake_is_one_problem_at_its_key(refused, sampled, method, given, key, words):
-    refused(sampled(method, **given), f"sampling.{key}", words)
-
-
 @pytest.mark.parametrize(
     "given",
     [
@@ -130,12 +125,6 @@ def test_groups_count_instead_of_parameters(read, sampled, method, given, runs):
     assert all(name == group for name, group in alone.group_of.items())
 
 
-@pytest.mark.parametrize(("groups", "key", "words"), WRONG_GROUPS)
-def test_a_mistake_in_groups_is_one_problem_at_its_key(refused, sampled, groups, key, words):
-    mass = {"sphere_mass": {"distribution": "fixed", "value": 1}}
-    refused(sampled("sobol", mass, base_samples=8, groups=groups), f"sampling.{key}", words)
-
-
 def test_a_group_that_yaml_takes_for_a_number_is_refused(refused, sample):
     text = sample().replace("  parameters:", "  groups: {3: [velocity]}\n  parameters:")
     refused(text, "sampling.groups", "3 cannot name a group")
@@ -200,7 +189,20 @@ def test_runs_may_be_placed_for_a_probability(read, sampled, problems, refused):
     assert "sampling.until.coefficient_of_variation" in {key for key, _ in found}
 
 
-@pytest.mark.parametrize(("change", "key", "words"), WRONG_UNTIL)
-def test_a_mistake_in_until_is_one_problem_at_its_key(refused, sampled, change, key, words):
-    text = sampled("sobol", base_samples=64, until=UNTIL | change)
-    refused(text, f"sampling.until.{key}", words)
+FIXED = {"sphere_mass": {"distribution": "fixed", "value": 1}}
+MISTAKES = [
+    *WRONG,
+    *(
+        ("sobol", {"parameters": FIXED, "base_samples": 8, "groups": groups}, key, words)
+        for groups, key, words in WRONG_GROUPS
+    ),
+    *(
+        ("sobol", {"base_samples": 64, "until": UNTIL | change}, f"until.{key}", words)
+        for change, key, words in WRONG_UNTIL
+    ),
+]
+
+
+@pytest.mark.parametrize(("method", "given", "key", "words"), MISTAKES)
+def test_a_mistake_is_one_problem_at_its_key(refused, sampled, method, given, key, words):
+    refused(sampled(method, **given), f"sampling.{key}", words)

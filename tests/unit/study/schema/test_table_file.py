@@ -1,17 +1,14 @@
 """Studies of a table in a CSV file."""
 
 import csv
-import json
 import re
 
 import numpy as np
 import pytest
-from jsonschema import Draft202012Validator
 
 import impactlab as il
 from impactlab.cli import results, solve
 from impactlab.files import read_netcdf
-from impactlab.study.schema.json_schema import study_schema
 from impactlab.study.schema.readers import describe, read_any, read_study
 from impactlab.study.schema.table_file import runs_of_file
 from impactlab.study.schema.yaml_file import read_mapping
@@ -70,29 +67,30 @@ def test_a_file_gives_the_bits_of_python_in_si_units(tmp_path, columns, delimite
     assert units == {"speed": "m s-1", "gap": "m", "force": "N", "dent": "m"}
     assert runs["speed"].attrs["distribution"] == "uniform"
     assert runs["speed"].attrs["high"] == 5.0
-    first, second = (il.analyse(table)["delta"].isel(response=0) for table in (runs, plain))
-    np.testing.assert_allclose(first, second, rtol=1e-6)
 
 
 def test_indices_without_units_are_those_of_python_to_the_last_bit(tmp_path, columns):
     text = re.sub(r"(gap|dent): \w+", r"\1:", TEXT).replace(", units: kN", "")
     text = text.replace("{units: m/s, distribution: uniform, low: 1 m/s, high: 5 m/s}", "")
+    text = text.replace("delta, pawn", "pawn")
     found = il.analyse(runs_of_file(read_any(_written(tmp_path, columns, text))))
     inputs = {name: columns[name] for name in ("speed", "gap", "metal")}
     outputs = {"force": columns["force (kN)"], "dent": columns["dent"]}
-    plain = il.runs_of_table(inputs, outputs, indices=["delta", "pawn"], seed=3, title="drops")
+    plain = il.runs_of_table(inputs, outputs, indices="pawn", seed=3, title="drops")
     expected = il.analyse(plain)
     for name in expected.data_vars:
         np.testing.assert_array_equal(found[name], expected[name], err_msg=str(name))
 
 
-def test_go_gives_results_and_a_report_that_speaks_of_rows(tmp_path, columns, monkeypatch, capsys):
+def test_go_gives_results_and_a_report_that_speaks_of_rows(
+    tmp_path, columns, monkeypatch, capsys, blank_pictures
+):
     columns["dent"][:] = 5 * columns["speed"] + columns["gap"]
     columns["dent"][4] = np.nan
     text = TEXT.replace("[delta, pawn]", "[rbd_fast]").replace("  metal:\n", "")
     path = _written(tmp_path, columns, text)
     monkeypatch.chdir(tmp_path)
-    for only in ("solve", "report", ""):
+    for only in ("solve", "report"):
         solve.go(path.relative_to(tmp_path), workers=1, only=only)
     said = capsys.readouterr().out
     assert re.search(r"speed \([\d.]+ ± [\d.]+ %\) explains most of the variance", said)
@@ -118,8 +116,9 @@ def test_go_gives_results_and_a_report_that_speaks_of_rows(tmp_path, columns, mo
     }
 
 
-def test_a_limit_in_its_unit_gives_target_indices(tmp_path, columns):
+def test_a_limit_in_its_unit_gives_target_indices(tmp_path, columns, validator):
     text = TEXT.replace("[delta, pawn]", "[target_hsic]\nlimits: {force: 6.5 kN}")
+    columns = {name: values[:150] for name, values in columns.items()}
     path = _written(tmp_path, columns, text)
     indices = il.analyse(runs_of_file(read_any(path)))["target_hsic"]
     inputs = {name: columns[name] for name in ("speed", "gap", "metal")}
@@ -129,7 +128,6 @@ def test_a_limit_in_its_unit_gives_target_indices(tmp_path, columns):
     np.testing.assert_allclose(indices.sel(response="force"), plain[0], rtol=1e-6)
     assert indices.sel(response="force")[0] > 0.3
     assert np.isnan(indices.sel(response="dent")).all()
-    validator = Draft202012Validator(json.loads(json.dumps(study_schema())))
     assert validator.is_valid(read_mapping(text, str(path)))
 
 
@@ -140,9 +138,6 @@ def test_a_choice_makes_words_of_numbers(tmp_path, columns):
     assert runs["metal"].dtype.kind == "U"
     assert runs["metal"].attrs["values"] == ["2", "1"]
     assert runs["metal"].attrs["weights"] == [0.25, 0.75]
-    steel = il.analyse(runs).sel(parameter="metal", response="force")["delta_first_order"]
-    share = 0.25 / (0.25 + 4 * 16 / 12)  # of the variance: of two words, and of 2 x speed
-    assert abs(steel - share) < 0.1
     columns["metal"][3] = "3"
     with pytest.raises(StudyError, match="line 5, metal = '3': unknown word"):
         runs_of_file(read_any(_written(tmp_path, columns, TEXT.replace("metal:", words))))
@@ -224,10 +219,9 @@ TEXTS = {
 
 
 @pytest.mark.parametrize("case", TEXTS)
-def test_a_wrong_key_is_named(tmp_path, columns, case):
+def test_a_wrong_key_is_named(tmp_path, columns, validator, case):
     old, new, words = TEXTS[case]
     path = _written(tmp_path, columns, TEXT.replace(old, new))
-    validator = Draft202012Validator(json.loads(json.dumps(study_schema())))
     if words is None:
         assert read_any(path).outputs.keys() == {"force"}
         assert validator.is_valid(read_mapping(path.read_text(), str(path)))

@@ -1,13 +1,10 @@
 """A test function behind the door of the solver."""
 
 import numpy as np
-import pytest
 import xarray as xr
 
 from impactlab.study.engine import Engine
 from impactlab.study.execute import execute
-from impactlab.study.solvers import function
-from impactlab.study.store import OutputSpec
 from impactlab.verification.functions import FUNCTIONS
 
 
@@ -27,12 +24,3 @@ def test_values_are_the_functions_under_the_designs_labels(tmp_path):
     assert runs["value"].dims == ("run",)
     assert (runs["status"] == 0).all()
     assert "Ishigami" in runs["value"].attrs["long_name"]
-
-
-@pytest.mark.parametrize("size", [1, 3, 7])
-def test_the_same_bits_in_any_batch(size):
-    asked = design(x1=np.linspace(-3, 3, 40), x2=np.linspace(1, 2, 40))
-    cases, form = function.cases(asked, np.arange(40)), OutputSpec(0, False)
-    whole = function.solve(cases, form)["value"]
-    parts = [function.solve(cases[at : at + size], form)["value"] for at in range(0, 40, size)]
-    assert whole.tobytes() == np.concatenate(parts).tobytes()
