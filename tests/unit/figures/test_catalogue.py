@@ -101,7 +101,7 @@ EXPECTED = {
 """Which figures apply to which study. A figure that is not listed is tried on the first study it
 applies to."""
 LISTED = set().union(*EXPECTED.values())
-FIRST = {name: study for study, names in reversed(EXPECTED.items()) for name in names}
+FIRST = {name: study for study, names in reversed(EXPECTED.items()) for name in sorted(names)}
 """The first study that each figure applies to."""
 NOT_WITHOUT_RUNS = {"failure_shares", "failure_map", "sobol_second_order"}
 LIKE_SOBOL_INDICES = {"delta_indices", "pawn_indices", "shapley_effects", "target_hsic_indices"}
