@@ -237,10 +237,13 @@ def parameter_effects(runs: xr.Dataset, analysis: xr.Dataset) -> Figure:
 
 
 def _compared(runs: xr.Dataset) -> str | None:
-    """Return the first parameter of several values, words first, where none has a curve."""
-    if access.is_sample(runs) or not responses(runs) or _along(runs) is not None:
+    """Return the first parameter of several values, words first, where none has a curve.
+
+    None for samples and where a grid is refined: those have figures of their own.
+    """
+    several = [dim for dim in varied(runs) if runs.sizes.get(dim, 0) > 1]
+    if access.is_sample(runs) or _along(runs) is not None or REFINEMENTS.keys() & {*several}:
         return None
-    several = [dim for dim in varied(runs) if runs.sizes.get(dim, 0) > 1 and dim not in REFINEMENTS]
     return min(several, key=lambda dim: runs[dim].dtype.kind in "if", default=None)
 
 
@@ -251,7 +254,7 @@ def _plan_compared(runs: xr.Dataset) -> Plan:
 @record.figure(
     "Responses side by side",
     "",
-    lambda runs, analysis: _compared(runs) is not None,
+    lambda runs, analysis: _compared(runs) is not None and bool(responses(runs)),
     lambda runs, analysis: (
         f"Responses by {labels.parameter(runs[_compared(runs)])}.",
         _plan_compared(runs).note(runs),
