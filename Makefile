@@ -6,7 +6,7 @@
 # make long    the tests that take longer: the 3-D model and its decks on finer meshes
 # make chaos   what crashes, full disks, lost workers and hostile files must not do (4 minutes)
 # make kratos  the 3-D model against Kratos Multiphysics, in a coarse case (2 minutes)
-# make oldest  quick unit tests with the lowest versions that pyproject.toml allows (2 minutes)
+# make oldest  quick unit tests with the lowest versions that pyproject.toml allows (3 minutes)
 # make docs    the site, in site/index.html: its notebooks and small studies are solved (6 minutes)
 # make stored  answers and pictures of the gallery's large studies, in docs/stored: those without any
 #              that are current (a minute to half an hour each), or STORED='sobol_large witness'

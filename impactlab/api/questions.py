@@ -123,7 +123,7 @@ def size(
     coefficient_of_variation : float, default 0.1
         Standard error to reach over the probability, from 0.01 to 0.5.
     workers : int, optional
-        Number of threads, by default of cores.
+        Number of threads; all cores by default.
 
     Returns
     -------
@@ -136,7 +136,7 @@ def size(
     StudyError
         If the study has no sample, or not one limit.
     ValueError
-        If a variable has no range or correlates with others, or a setting is out of range.
+        If a variable has no range or correlates, a setting is out of range, or the name is taken.
 
     Examples
     --------

@@ -43,6 +43,7 @@ from impactlab.solver import timoshenko
 from impactlab.solver.beam import CLAMPED, SYMMETRIC, BeamGrid, push_nodes
 from impactlab.solver.contact.axis_lift import axis_lift
 from impactlab.solver.contact_patch import spread_over_nodes
+from impactlab.solver.euler_bernoulli import deflected
 from impactlab.solver.fibre_plasticity import curvature, plastic_energy
 from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
 from impactlab.solver.kink import bend_back
@@ -56,7 +57,7 @@ from impactlab.solver.resisted_pair import (
 from impactlab.solver.resisted_shear import move_resisted
 from impactlab.solver.section import FibreSection
 from impactlab.solver.settle import ROUNDS, end_tangents, yield_on
-from impactlab.solver.state import State
+from impactlab.solver.state import BeamModel, State
 from impactlab.solver.timoshenko import Shear
 from impactlab.solver.types import ONE, Array, Record
 
@@ -328,17 +329,18 @@ def _push(state: State, now: int, nodes: Array, forces: Array) -> float:
     return 0.0
 
 
-MODEL = timoshenko.MODEL._replace(
-    make=_make,
-    step=_step,
-    curvature=_curvature,
-    energy=_energy,
-    spread=_spread,
+MODEL = BeamModel(
+    _make,
+    _step,
+    _curvature,
+    _energy,
+    deflected,
+    _spread,
+    _settle,
     sag=_sag,
     beneath=_beneath,
     lift=_lift,
     moments=_moments,
     bend_back=_bend_back,
-    settle=_settle,
     push=_push,
 )

@@ -19,20 +19,15 @@ from impactlab.solver.beam import (
     copies,
     mirror,
 )
-from impactlab.solver.contact_patch import spread_over_nodes
-from impactlab.solver.euler_bernoulli import deflected
 from impactlab.solver.fibre_plasticity import (
     PlasticState,
     begin_tangents,
-    curvature,
     follow_tangents,
     leave_tangents,
-    plastic_energy,
 )
 from impactlab.solver.jit import allocating, compiled, inlined, summing, vectorised
 from impactlab.solver.section import FibreSection
-from impactlab.solver.settle import ROUNDS, end_tangents, rest_nodes, static_shape, yield_on
-from impactlab.solver.state import BeamModel, State
+from impactlab.solver.settle import rest_nodes, static_shape
 from impactlab.solver.types import ONE, Array, Record
 
 
@@ -137,13 +132,6 @@ def move(grid: BeamGrid, beam: BeamState, shear: Shear, now: int, F: float, per_
     mirror(beam.w, now, beam.u, grid)
 
 
-@inlined
-def _step(state: State, now: int, F: float) -> None:
-    _, section, grid, beam, plastic, shear = state
-    per_dx = bend_sections(section, grid, beam, plastic, shear, now)
-    move(grid, beam, shear, now, F, per_dx)
-
-
 @vectorised
 def _moments(
     shear: Shear, plastic_state: PlasticState, EI: float, per_dx: float, last: int
@@ -240,26 +228,6 @@ def spring_energy(beam: BeamState, now: int, psi: Array, spin: Array, grid: Beam
     return grid.copies * EI_per_dx * total
 
 
-@compiled
-def _curvature(state: State, now: int) -> float:
-    return curvature(state.beam.w, now, state.extra.psi, state.grid, np.uint64(state.grid.mid))
-
-
-@compiled
-def _energy(state: State, now: int, F: float, u_mid: float) -> float:
-    stored, dissipated = plastic_energy(state.plastic, state.section, state.grid)
-    EI = state.section.stiffness
-    elastic = shear_energy(state.beam, state.extra, state.plastic.M_0, EI, state.grid)
-    springs = spring_energy(state.beam, now, state.extra.psi, state.extra.spin, state.grid)
-    return stored + dissipated + elastic + springs
-
-
-@compiled
-def _spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
-    ahead, _, _ = spread_over_nodes(state.beam, state.grid, now, F, a)
-    return ahead, 0.0
-
-
 @inlined
 def rest(
     section: FibreSection,
@@ -283,17 +251,3 @@ def rest(
     rest_nodes(beam, grid)
     mirror_rotation(shear.psi, grid)
     _moments(shear, plastic, section.stiffness, 1.0 / grid.dx, grid.last)
-
-
-@compiled
-def _settle(state: State) -> None:
-    _, section, grid, beam, plastic, shear = state
-    end_tangents(beam, plastic, section, grid)
-    for _ in range(ROUNDS):
-        rest(section, grid, beam, plastic, shear, plastic.M_0, 0.0)
-        if not yield_on(beam, shear.psi, plastic, section, grid):
-            break
-    _moments(shear, plastic, section.stiffness, 1.0 / grid.dx, grid.last)
-
-
-MODEL = BeamModel(make, _step, _curvature, _energy, deflected, _spread, settle=_settle)

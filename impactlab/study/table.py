@@ -45,7 +45,8 @@ def runs_of_table(
     """Make runs of a table of inputs and outputs, for `analyse`, `answers`, `table` and `plot`.
 
     The rows may come from any design, or from measurements, provided that they are independent
-    draws or spread more evenly. The answers name pairs of inputs whose correlation is no chance.
+    draws or spread more evenly; each counts the same, so weighted rows have to be drawn again by
+    their weights. The answers name pairs of inputs whose rank correlation is too large for chance.
 
     Parameters
     ----------
@@ -54,7 +55,7 @@ def runs_of_table(
     outputs : mapping, pandas.DataFrame or xarray.Dataset
         Numbers by name of the response, (rows,); with a NaN its verdict is `failed_runs`.
     indices : str or sequence of str, default "delta"
-        Indices of given data, as those of `Latin`; the first one ranks.
+        Indices of given data, as those of `Latin`; the first one ranks the parameters.
     limits : mapping of str to float, optional
         Limit by response, for "target_hsic": what decides whether the response exceeds it.
     seed : int, default 1
@@ -88,9 +89,8 @@ def runs_of_table(
     parameters = {str(name): np.asarray(inputs[name]) for name in inputs}
     responses = {str(name): np.asarray(outputs[name]) for name in outputs}
     rows = _check_shape(parameters, responses)
-    for name in limits:
-        if name not in responses:
-            raise ValueError(f"limits: {name!r} {unknown('response', name, responses)}")
+    for name in [name for name in limits if name not in responses]:
+        raise ValueError(f"limits: {name!r} {unknown('response', name, responses)}")
     _check_size(records, title, rows, len(parameters))
     order = np.random.default_rng(seed).permutation(rows)
     columns = {
@@ -100,7 +100,7 @@ def runs_of_table(
         name: ("run", _outputs(name, values)[order], {"units": "1", "long_name": name})
         for name, values in responses.items()
     }
-    numbers = [name for name, entry in columns.items() if "distribution" not in entry[2]]
+    numbers = {n: parameters[n] for n, entry in columns.items() if "distribution" not in entry[2]}
     attrs = {"study": title, "title": title, "method": TableSample.name(), "seed": seed} | {
         "indices": [record.name for record in records],
         "varied": list(parameters),
@@ -111,7 +111,7 @@ def runs_of_table(
         attrs |= {"limited": list(limits), "limits": list(map(float, limits.values()))}
     status = {"status": ("run", np.zeros(rows, np.int32))}
     axes = {"run": np.arange(rows), "row": ("run", order, {"long_name": "row of the table"})}
-    attrs |= _correlations({name: parameters[name].astype(float) for name in numbers})
+    attrs |= _correlations(numbers)
     return xr.Dataset(variables | status, axes | columns, attrs)
 
 
