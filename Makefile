@@ -171,7 +171,7 @@ $(MADE):
 $(MADE)-%: $(MADE) pyproject.toml constraints.txt
 	@echo 'Installing into $(VENV) (a minute the first time) ...'
 	@$(PIP) install --quiet --no-compile --constraint constraints.txt uv
-	@$(BIN)/uv pip install --python $(BIN)/python --quiet --no-cache --compile-bytecode $(PINNED) || \
+	@$(BIN)/uv pip install --python $(BIN)/python --quiet --no-cache $(PINNED) || \
 	  $(PIP) install --quiet --no-compile $(PINNED)
 	@touch $@
 
