@@ -28,7 +28,7 @@ Its sampling
                                    from given data: a Latin hypercube
     Latin                          several of these four at once
     Uniform, LogUniform, Normal, TruncatedNormal, Lognormal, Triangular
-    Choice, Integers               one of several words, a whole number
+    Choice, Integers, Steps        one of several words, a whole number, a value of a series
 
 What the runs say
     analyse         convergence and sensitivity, with verdicts

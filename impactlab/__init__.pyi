@@ -18,6 +18,7 @@ from .methods.distributions import Integers as Integers
 from .methods.distributions import Lognormal as Lognormal
 from .methods.distributions import LogUniform as LogUniform
 from .methods.distributions import Normal as Normal
+from .methods.distributions import Steps as Steps
 from .methods.distributions import Triangular as Triangular
 from .methods.distributions import TruncatedNormal as TruncatedNormal
 from .methods.distributions import Uniform as Uniform

@@ -30,6 +30,8 @@ from impactlab.model.quantities import Quantity
 from impactlab.types import Floats
 from impactlab.validation.fields import Number, Whole
 
+_ROUNDING = 1e-9  # of numbers of steps
+
 
 @dataclass(frozen=True)
 class Uniform(Distribution):
@@ -191,7 +193,63 @@ class Triangular(Distribution):
 
 
 @dataclass(frozen=True)
-class Integers(Distribution):
+class Steps(Distribution):
+    """Equal probability of the values from `low` to `high` at one distance, both among them.
+
+    For `Sobol`, whose indices allow for runs of equal value.
+
+    Parameters
+    ----------
+    low, high : Quantity
+        Least and greatest value, in the parameter's unit.
+    step : Quantity
+        Distance of neighbouring values, which divides that of the ends.
+
+    Examples
+    --------
+    >>> place, stock = il.Steps(0.2, 0.5, 0.05), il.Steps("10 mm", "30 mm", "5 mm")
+    """
+
+    low: Value
+    high: Value
+    step: Positive
+    is_discrete = True
+
+    @field_validator("step")
+    @classmethod
+    def _check_step(cls, step: float, info: ValidationInfo) -> float:
+        if {"low", "high"} <= info.data.keys():
+            steps = (info.data["high"] - info.data["low"]) / step
+            if abs(steps - round(steps)) > _ROUNDING * max(steps, 1.0):
+                raise ValueError("does not lead from low to high in whole steps")
+        return step
+
+    @property
+    def levels(self) -> np.ndarray[Any, Any]:
+        """All values that may be drawn, in rising order, in SI units."""
+        return np.linspace(self.low, self.high, round((self.high - self.low) / self.step) + 1)
+
+    def _frozen(self) -> Any:
+        """Return the distribution of the number of steps above `low`."""
+        return scipy.stats.randint(0, self.levels.size)
+
+    def quantile(self, probability: ArrayLike) -> Any:
+        """Return the values (same shape) below or at which a draw lies at least so often."""
+        steps = np.asarray(self._frozen().ppf(probability)).astype(np.int64)
+        return self.levels[np.maximum(steps, 0)]
+
+    def at_scores(self, scores: ArrayLike) -> Any:
+        """Return the values (same shape) at standard normal scores."""
+        return self.quantile(scipy.special.ndtr(scores))
+
+    def cumulative(self, values: ArrayLike) -> Floats:
+        """Return the probabilities (same shape) that a draw lies at or below these values."""
+        steps = (np.asarray(values) - self.low) / self.step
+        return np.asarray(self._frozen().cdf(steps + _ROUNDING * self.levels.size))
+
+
+@dataclass(frozen=True)
+class Integers(Steps):
     """Equal probability of the whole numbers from `low` to `high`, both among them.
 
     For `Sobol`, whose indices allow for runs of equal value.
@@ -211,30 +269,11 @@ class Integers(Distribution):
     low: Annotated[Quantity, PlainValidator(read_whole)]
     high: Annotated[Quantity, PlainValidator(read_whole)]
     step: Annotated[Whole, Field(ge=1)] = 1
-    is_discrete = True
 
-    @field_validator("step")
-    @classmethod
-    def _check_step(cls, step: int, info: ValidationInfo) -> int:
-        if {"low", "high"} <= info.data.keys() and (info.data["high"] - info.data["low"]) % step:
-            raise ValueError("does not lead from low to high in whole steps")
-        return step
-
-    def _frozen(self) -> Any:
-        """Return the distribution of the number of steps above `low`."""
-        return scipy.stats.randint(0, (self.high - self.low) // self.step + 1)
-
-    def quantile(self, probability: ArrayLike) -> Any:
-        """Return the whole numbers (same shape) below or at which a draw lies at least so often."""
-        return self.low + self.step * np.asarray(self._frozen().ppf(probability)).astype(np.int64)
-
-    def at_scores(self, scores: ArrayLike) -> Any:
-        """Return the whole numbers (same shape) at standard normal scores."""
-        return self.quantile(scipy.special.ndtr(scores))
-
-    def cumulative(self, values: ArrayLike) -> Floats:
-        """Return the probabilities (same shape) that a draw lies at or below these values."""
-        return np.asarray(self._frozen().cdf((np.asarray(values) - self.low) / self.step))
+    @property
+    def levels(self) -> np.ndarray[Any, Any]:
+        """All numbers that may be drawn, in rising order."""
+        return np.asarray(np.rint(super().levels)).astype(np.int64)
 
 
 @dataclass(frozen=True)
@@ -301,9 +340,8 @@ class Fixed(Entry):
 
 CHOICE = Choice.name()
 """The name of the draw among words, which have no order and so no quantiles."""
-DISTRIBUTIONS: Mapping[str, type[Distribution]] = {
-    kind.name(): kind for kind in Distribution.__subclasses__()
-}
+_KINDS: list[type[Distribution]] = [*Distribution.__subclasses__(), Integers]
+DISTRIBUTIONS: Mapping[str, type[Distribution]] = {kind.name(): kind for kind in _KINDS}
 """Distributions of numbers, by their names in study files."""
 ENTRIES: Mapping[str, type[Entry]] = {**DISTRIBUTIONS, CHOICE: Choice, Fixed.name(): Fixed}
 

@@ -104,7 +104,7 @@ class Sampling(Stated):
 
     @property
     def discrete(self) -> list[str]:
-        """Names of the parameters that are drawn among whole numbers."""
+        """Names of the parameters that are drawn among few values."""
         entries = self.parameters.items()
         return [n for n, entry in entries if isinstance(entry, Distribution) and entry.is_discrete]
 
@@ -112,7 +112,7 @@ class Sampling(Stated):
     def no_surrogate(self) -> str:
         """The reason why no surrogate is fitted to the runs; "" where one is."""
         if self.discrete:
-            return "no surrogate is fitted over whole numbers"
+            return "no surrogate is fitted over steps or whole numbers"
         return "no surrogate is fitted over words, which have no order" if self.words else ""
 
     @property
@@ -167,7 +167,7 @@ class RandomSample(Sampling):
     seed: equal seeds give equal draws; 0 is a seed like any other. parameters: a distribution, a
     choice of words or one fixed value each. records: the indices that it has by itself. even: True
     where draws spread more evenly than random ones. allows_ties: True
-    where its indices hold although many runs share a value, as whole numbers do. blocks: setting
+    where its indices hold although many runs share a value, as steps do. blocks: setting
     with the number of blocks of runs that are near-copies of each other; "" where all runs are
     draws of their own.
 
@@ -246,7 +246,9 @@ class RandomSample(Sampling):
     @model_validator(mode="after")
     def _check_discrete(self) -> Self:
         if self.discrete and not self.allows_ties:
-            reason = "draws whole numbers, which method sobol alone does: take it, or a grid"
+            reason = (
+                "draws from a list of values, which method sobol alone does: take it, or a grid"
+            )
             raise at_key(f"parameters.{self.discrete[0]}.distribution", reason)
         return self
 

@@ -8,7 +8,7 @@ import numpy as np
 from impactlab import wings
 from impactlab.analysis import ANALYSES
 from impactlab.methods import NO_DISTRIBUTION
-from impactlab.methods.distributions import Choice, Integers
+from impactlab.methods.distributions import Choice, Steps
 from impactlab.methods.entries import Distribution
 from impactlab.methods.grid import Grid
 from impactlab.methods.hypercube import Hypercube
@@ -47,15 +47,15 @@ def further_models(study: ImpactStudy | StudyFile) -> list[wings.FurtherModel]:
 
 
 def values_of(sampling: Grid | RandomSample, name: str, base: Value) -> tuple[Value, ...]:
-    """Return all values of a parameter that a sample draws no numbers for, or the ends of those."""
+    """Return all values of a parameter that a sample draws none between for."""
     entry = sampling.parameters.get(name)
     values: tuple[Value, ...] = (sampling.fixed.get(name, base),)
     if isinstance(sampling, Grid) and entry is not None:
         values = entry
     elif isinstance(entry, Choice):
         values = tuple(entry.values)
-    elif isinstance(entry, Integers):
-        values = entry.low, entry.high
+    elif isinstance(entry, Steps):
+        values = tuple(entry.levels.tolist())
     return values
 
 
@@ -233,8 +233,9 @@ def _other_beams(file: StudyFile, models: set[Value]) -> Reasons:
     sampling, beam, grid = file.sampling, file.impact.beam, file.discretisation[0]
     places = values_of(sampling, "strike_position", file.impact.strike_position)
     key = key_of("strike_position", sampling)
-    if isinstance(sampling.varied.get("strike_position"), Distribution):
-        yield key, "must be struck on a node: list places with method: grid, or fix one"
+    entry = sampling.varied.get("strike_position")
+    if isinstance(entry, Distribution) and not entry.is_discrete:
+        yield key, "must lie on a node: write {distribution: steps, low: ..., high: ..., step: ...}"
         return
     for place in map(float, places):
         for nodes in map(int, values_of(sampling, "nodes", grid.nodes)):

@@ -1,4 +1,6 @@
-"""Whole numbers in samples: exact probabilities, indices of a product, and what takes none."""
+"""Whole numbers and steps in samples: probabilities, indices, and what takes none."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,6 +8,8 @@ from scipy.special import ndtri
 
 import impactlab as il
 from impactlab.methods.distributions import distribution_of
+from impactlab.model.case_table import case_table
+from impactlab.solve import solve
 
 ATTRIBUTES = {"distribution": "integers", "low": 3, "high": 11, "step": 2}
 NUMBERS = [3, 5, 7, 9, 11]
@@ -31,6 +35,16 @@ def test_each_number_has_its_share_of_the_probabilities():
     assert integers.at_scores(ndtri([0.1, 0.3, 0.5, 0.7, 0.9])).tolist() == NUMBERS
     shares = integers.cumulative([2, 3, 4, 5, 11, 12])
     assert shares == pytest.approx([0.0, 0.2, 0.2, 0.4, 1.0, 1.0])
+
+
+def test_steps_are_drawn_equally_often_and_to_the_ends():
+    steps = distribution_of({"distribution": "steps", "low": 0.1, "high": 0.7, "step": 0.2})
+    values, counts = np.unique(steps.quantile((np.arange(400) + 0.5) / 400), return_counts=True)
+    assert values.tolist() == pytest.approx([0.1, 0.3, 0.5, 0.7])
+    assert counts.tolist() == [100] * 4
+    assert (values[0], values[-1]) == (0.1, 0.7)
+    assert steps.cumulative(values).tolist() == [0.25, 0.5, 0.75, 1.0]
+    assert steps.quantile([0.0, 1.0]).tolist() == [0.1, 0.7]
 
 
 def test_a_sample_draws_each_number_equally_often(study):
@@ -70,6 +84,38 @@ def test_the_dents_of_sampled_strikes_are_those_of_grids(tmp_path):
     alone = il.Study(title="Alone", sampling=grid, **options).run(workers=1)
     assert runs.permanent_indentation[last] == alone.permanent_indentation.values[-1, 0]
     assert alone.permanent_indentation.values[-1] > alone.permanent_indentation.values[0]
+
+
+def test_places_of_the_strike_are_drawn_on_nodes(tmp_path):
+    """A beam with equal ends struck at s answers as one struck at 1 - s."""
+    impact = il.paper_impact("1 m/s")
+    beam = replace(impact.beam, support_left="clamped", support_right="clamped")
+    parameters = {"strike_position": il.Steps(0.3, 0.7, 0.1), "velocity": il.Uniform(0.5, 1.5)}
+    options = {
+        "impact": replace(impact, beam=beam),
+        "discretisation": il.Discretisation(nodes=21, points=3, scheme="modal"),
+        "duration": "0.5 ms",
+        "responses": ["peak_force"],
+        "results": tmp_path,
+    }
+    sampling = il.Sobol(base_samples=16, parameters=parameters, second_order=False)
+    study = il.Study(title="Places", sampling=sampling, **options)
+    study.to_yaml(tmp_path / "places.yaml")
+    assert il.Study.from_yaml(tmp_path / "places.yaml").declared.sampling.varied == parameters
+    runs = study.run(workers=1)
+    places, velocities = runs["strike_position"].values, runs["velocity"].values
+    assert np.unique(places).tolist() == pytest.approx([0.3, 0.4, 0.5, 0.6, 0.7])
+    mirrored = {"strike_position": (1.0 - places).round(9), "velocity": velocities}
+    cases = case_table(
+        options["impact"], options["discretisation"], duration=0.0005, varied=mirrored
+    )
+    assert runs["peak_force"].values == pytest.approx(solve(cases)["peak_force"], rel=1e-8)
+    for parameters["strike_position"], reason in (
+        (il.Uniform(0.3, 0.7), "write {distribution: steps"),
+        (il.Steps(0.3, 0.7, 0.02), "0.32 lies between two of the 21 nodes"),
+    ):
+        with pytest.raises(il.StudyError, match=reason):
+            il.Study(title="Between", sampling=replace(sampling, parameters=parameters), **options)
 
 
 def test_methods_that_need_distinct_values_and_refinement_refuse_them(tmp_path):

@@ -14,6 +14,7 @@ CASES = {
     "lognormal": {"median": 10.0, "geometric_standard_deviation": 1.3},
     "triangular": {"low": 2.0, "mode": 3.0, "high": 8.0},
     "integers": {"low": 3, "high": 11, "step": 2},
+    "steps": {"low": 0.1, "high": 0.7, "step": 0.2},
 }
 
 
@@ -36,6 +37,9 @@ CONTRADICTIONS = [
     ("integers", {"high": 3}, "high", "must be above low"),
     ("integers", {"low": 2.5}, "low", "expected a whole number"),
     ("integers", {"step": 3}, "step", "does not lead from low to high"),
+    ("steps", {"high": 0.1}, "high", "must be above low"),
+    ("steps", {"step": 0.0}, "step", "must be above 0"),
+    ("steps", {"step": 0.25}, "step", "does not lead from low to high"),
 ]
 
 
