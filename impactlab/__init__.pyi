@@ -1,6 +1,7 @@
 from . import plot as plot
 from .analysis.analyse import analyse as analyse
-from .analysis.multifidelity import FidelityEstimate as FidelityEstimate
+from .analysis.fidelity_estimates import FidelityEstimate as FidelityEstimate
+from .analysis.fidelity_estimates import FidelityPrediction as FidelityPrediction
 from .analysis.multifidelity import Multifidelity as Multifidelity
 from .analysis.surrogate import load_surrogate as load_surrogate
 from .api.definition import Study as Study

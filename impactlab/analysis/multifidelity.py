@@ -18,6 +18,14 @@ from typing import Any
 import numpy as np
 import scipy  # its stats and special are loaded when first used
 
+from impactlab.analysis.fidelity_correction import predicted
+from impactlab.analysis.fidelity_estimates import (
+    FidelityEstimate,
+    FidelityPrediction,
+    interval_on,
+    outputs_of,
+    table_of,
+)
 from impactlab.analysis.multifidelity_distribution import (
     Fit,
     Statistic,
@@ -47,44 +55,6 @@ VARIANCE_SAFETY = 1.2  # standard errors of variances of skewed outputs are too 
 
 
 @dataclass(frozen=True)
-class FidelityEstimate:
-    """A statistic of the slow model, with its interval.
-
-    Parameters
-    ----------
-    value : float
-        Estimate, in the unit of the statistic.
-    standard_error : float
-        Standard error, in the same unit.
-    interval : tuple of float
-        Lower and upper end of the interval.
-    plain_error : float
-        Standard error that the slow runs alone give.
-
-    Examples
-    --------
-    >>> il.FidelityEstimate(12.0, 0.5, (11.0, 13.0), plain_error=1.0).saving
-    4.0
-    """
-
-    value: float
-    standard_error: float
-    interval: tuple[float, float]
-    plain_error: float
-
-    @property
-    def saving(self) -> float:
-        """Plain slow runs per slow run for the same standard error: above 1, runs are saved.
-
-        Returns
-        -------
-        float
-            Ratio of the variances.
-        """
-        return (self.plain_error / self.standard_error) ** 2
-
-
-@dataclass(frozen=True)
 class Multifidelity:
     """Mean and variance of a slow model, and its probability beyond a limit, by a fast model.
 
@@ -97,6 +67,8 @@ class Multifidelity:
         Outputs of the slow model, (high runs,), at least 20.
     confidence : float, default 0.95
         Of the intervals.
+    inputs : array_like, optional
+        Parameters of the slow model's runs, (high runs, parameters): `prediction` needs them.
 
     Raises
     ------
@@ -135,10 +107,11 @@ class Multifidelity:
     low: Any
     high: Any
     confidence: float = 0.95
+    inputs: Any = None
 
     def __post_init__(self) -> None:
         for name in ("low", "high"):
-            object.__setattr__(self, name, _outputs(name, getattr(self, name)))
+            object.__setattr__(self, name, outputs_of(name, getattr(self, name)))
         runs = self.high.size
         if runs < FEWEST_PAIRS:
             raise ValueError(f"Multifidelity.high: has {runs} runs: at least {FEWEST_PAIRS}")
@@ -150,6 +123,9 @@ class Multifidelity:
             raise ValueError("Multifidelity: outputs that do not vary have no correlation")
         if not 0.0 < self.confidence < 1.0:
             raise ValueError(f"Multifidelity.confidence = {self.confidence}: must be in (0, 1)")
+        if self.inputs is not None:
+            inputs = table_of("inputs", self.inputs, runs)
+            object.__setattr__(self, "inputs", inputs)
 
     @property
     def correlation(self) -> float:
@@ -326,6 +302,47 @@ class Multifidelity:
             value, slope * share.standard_error, (low, high), slope * share.plain_error
         )
 
+    def prediction(self, points: Any, low: Any) -> FidelityPrediction:
+        """Return the slow model's answers at points, from the fast model's there.
+
+        Line and Gaussian process through the pairs, with intervals that their misses of left-out
+        pairs tell. It needs scikit-learn (``pip install 'impactlab[kriging]'``).
+
+        Parameters
+        ----------
+        points : array_like
+            Parameters, (points, parameters), as in `inputs`.
+        low : array_like
+            Outputs of the fast model there, (points,).
+
+        Returns
+        -------
+        FidelityPrediction
+            In the unit of the output, NaN beyond the pairs' range of a parameter.
+
+        Raises
+        ------
+        ValueError
+            If there are no `inputs`, too few pairs for the confidence, or shapes differ.
+        OSError
+            If scikit-learn is not installed.
+
+        Examples
+        --------
+        >>> x = np.random.default_rng(1).uniform(size=(200, 2))
+        >>> low, inputs = x.sum(axis=1), x[:40]
+        >>> models = il.Multifidelity(low=low, high=low[:40] + 0.1 * inputs[:, 0], inputs=inputs)
+        >>> answer = models.prediction([[0.5, 0.5], [0.5, 2.0]], low=[1.0, 2.5])
+        >>> bool(answer.low[0] <= 1.05 <= answer.high[0]), answer.refusal[1]
+        (True, "parameter 2 is beyond the pairs'")
+        """
+        owner = "Multifidelity.prediction"
+        if self.inputs is None:
+            raise ValueError(f"{owner}: state the `inputs` of the pairs")
+        fast = outputs_of("prediction: low", low)
+        points = table_of("prediction: points", points, fast.size, self.inputs.shape[1])
+        return predicted(owner, self.inputs, self.low, self.high, points, fast, self.confidence)
+
     def _estimate(
         self,
         function: Statistic,
@@ -359,42 +376,12 @@ class Multifidelity:
         factor = scipy.stats.t.ppf(0.5 + self.confidence / 2, freedom)
         estimate = float(pseudo.mean())
         plain = float(np.sqrt(values.var(ddof=1) / runs))
-        return FidelityEstimate(estimate, error, _interval(estimate, factor * error, scale), plain)
+        return FidelityEstimate(
+            estimate, error, interval_on(scale, estimate, factor * error), plain
+        )
 
 
 def best_ratio(correlation: float, cost_ratio: float) -> float:
     """Return fast runs per slow run, at least 1, that serve the mean best for a budget."""
     square = correlation**2
     return max(1.0, float(np.sqrt(cost_ratio * square / max(1.0 - square, 1e-12))))
-
-
-def _outputs(name: str, values: Any) -> Floats:
-    """Return outputs as (runs,). Raises ValueError where they are not, or a run has no answer."""
-    outputs = np.asarray(values, dtype=float)
-    if outputs.ndim != 1:
-        raise ValueError(f"Multifidelity.{name}: must be one output per run")
-    if missing := int(np.sum(~np.isfinite(outputs))):
-        raise ValueError(
-            f"Multifidelity.{name}: {missing} of {outputs.size} runs have no answer: failed runs "
-            "cannot be left out, because they may be the extreme ones"
-        )
-    return outputs
-
-
-def _interval(
-    value: float, margin: float, scale: tuple[Callable[[Floats], Floats], ...]
-) -> tuple[float, float]:
-    """Return an interval that is even on a scale, by the derivative of the scale at the value."""
-    if not scale:
-        return float(value - margin), float(value + margin)
-    forward, backward = scale
-    with np.errstate(invalid="ignore", divide="ignore"):
-        low, centre, high = forward(value * np.array([1 - 1e-6, 1, 1 + 1e-6]))
-    if not np.isfinite([low, centre, high]).all():
-        raise ValueError(
-            f"Multifidelity: the estimate {value:.3g} is impossible: add runs of high, because the "
-            "pairs predict it too poorly"
-        )
-    width = margin * (high - low) / (2e-6 * value)
-    lower, upper = backward(centre + width * np.array([-1, 1]))
-    return float(lower), float(upper)

@@ -175,6 +175,7 @@ def multifidelity(
     runs: int = 0,
     budget: Quantity = 0.0,
     indices: bool = False,
+    predict: Mapping[str, Any] | None = None,
     workers: int = CORES,
 ) -> xr.Dataset:
     """Estimate statistics of a slow model from few of its runs and many of the study's model.
@@ -201,6 +202,11 @@ def multifidelity(
     indices : bool, default False
         True for Sobol indices of the slow model, too: they take 2,048 further runs of the study's
         model per parameter, and more.
+    predict : mapping of str to Quantity or list of Quantity, optional
+        Values of drawn parameters, such as `{"velocity": [5, 10], "beam_depth": "27 mm"}`, at which
+        the slow model's answers are predicted from one run of the study's model each; lists have
+        one length, and other parameters lie at their medians. It needs scikit-learn
+        (``pip install 'impactlab[kriging]'``).
     workers : int, optional
         Number of threads; by default that of the machine's cores.
 
@@ -208,9 +214,10 @@ def multifidelity(
     -------
     xarray.Dataset
         `estimate` on (response, statistic, bound), `saving`, `correlation`, costs, `verdict` and
-        the pairs; with `indices`, `slow_index` on (response, order, parameter, bound); the
-        attribute `answer` holds the findings in sentences. They are kept in the
-        study's folder as multifidelity.nc, with the report multifidelity.html.
+        the pairs; with `indices`, `slow_index` on (response, order, parameter, bound); with
+        `predict`, `prediction` on (response, point, bound), NaN beyond the pairs, for the reason in
+        `prediction_refusal`; the attribute `answer` holds the findings in sentences. They are kept
+        in the study's folder as multifidelity.nc, with the report multifidelity.html.
 
     Raises
     ------
@@ -218,13 +225,15 @@ def multifidelity(
         If the study has no sample, or cannot have these values.
     ValueError
         If a setting is out of range, or another study has results of this name.
+    OSError
+        If scikit-learn is needed and not installed.
 
     Examples
     --------
     >>> study = il.Study(
     ...     title="Power", function=lambda x, power: (1 + x) ** power, limits={"value": 3},
     ...     sampling=il.Pawn(samples=128, parameters={"x": il.Uniform(0, 1), "power": 1}))
-    >>> both = il.multifidelity(study, {"power": 2}, runs=2000, workers=1)
+    >>> both = il.multifidelity(study, {"power": 2}, runs=2000, predict={"x": 0.5}, workers=1)
     >>> mean = both.estimate.sel(response="value", statistic="mean")
     >>> bool(mean.sel(bound="low") < 7 / 3 < mean.sel(bound="high"))
     True
@@ -235,7 +244,7 @@ def multifidelity(
     seconds, engine = si(budget, "s"), local_engine(workers)
     result = statistics(
         study.declared, study.folder, engine, high, pairs=pairs, runs=runs, budget=seconds,
-        indices=indices,
+        indices=indices, predict=predict,
     )  # fmt: skip
     report_multifidelity(result, study.folder)
     return result

@@ -119,14 +119,20 @@ def multifidelity(
     indices: Annotated[
         bool, typer.Option("--indices", help="Sobol indices of the slow model, too.")
     ] = False,
+    predict: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=VALUE,...", help="Where to predict the slow model's answers."),
+    ] = None,
     workers: Annotated[int, typer.Option(min=1, help="Threads.")] = os.cpu_count() or 1,
 ) -> None:
     """Estimate statistics of a slow model by a fast one.
 
     Solves few runs of the slow model and many of the study's, and prints mean, standard deviation
     and probability beyond the limit of the slow model's responses, with intervals and what they
-    save. Writes multifidelity.nc and multifidelity.html, its report, to results/NAME; runs are kept
-    there, and are not solved again.
+    save. --predict velocity=5,10 --predict 'beam_depth=27 mm' adds its answers there, other
+    parameters at their medians; it needs pip install 'impactlab[kriging]'. Writes multifidelity.nc
+    and multifidelity.html, its report, to results/NAME; runs are kept there, and are not solved
+    again.
     """
     stop_solving()
     from impactlab.report.questions import report_multifidelity
@@ -140,7 +146,9 @@ def multifidelity(
     seconds = given("--budget", budget, "s") if budget else 0.0
     texts = assigned(high) if high else {}
     values = {name: int(t) if t.isdecimal() else t for name, t in texts.items()} or None
+    points = {name: text.split(",") for name, text in assigned(predict or []).items()}
     result = statistics(
-        declared, folder, engine, values, pairs=pairs, runs=runs, budget=seconds, indices=indices
-    )
+        declared, folder, engine, values, pairs=pairs, runs=runs, budget=seconds, indices=indices,
+        predict=points,
+    )  # fmt: skip
     print(result.attrs["answer"], report_multifidelity(result, folder), sep="\n")

@@ -247,6 +247,11 @@ class Steps(Distribution):
         steps = (np.asarray(values) - self.low) / self.step
         return np.asarray(self._frozen().cdf(steps + _ROUNDING * self.levels.size))
 
+    def scores(self, values: ArrayLike) -> Floats:
+        """Return the scores (same shape) in the middle of those of each value."""
+        steps = np.rint((np.asarray(values) - self.low) / self.step)
+        return np.asarray(scipy.special.ndtri((steps + 0.5) / self.levels.size))
+
 
 @dataclass(frozen=True)
 class Integers(Steps):
@@ -324,6 +329,12 @@ class Choice(Entry):
         """Return the words at these probabilities in (0, 1), in their order, of the same shape."""
         ends = np.cumsum(self.arguments()["weights"])[:-1]
         return np.array(self.values)[np.searchsorted(ends, probability, side="right")]
+
+    def scores(self, words: np.ndarray[Any, Any]) -> Floats:
+        """Return the scores (same shape) in the middle of those of each word."""
+        shares = np.array(self.arguments()["weights"])
+        middles = dict(zip(self.values, np.cumsum(shares) - shares / 2, strict=True))
+        return np.asarray(scipy.special.ndtri([middles[word] for word in words]))
 
     def arguments(self) -> dict[str, Any]:
         """Return name, words and probabilities as lists, for the attributes of a dataset."""

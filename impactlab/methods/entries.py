@@ -115,6 +115,13 @@ class Distribution(Entry):
         """Return the probabilities (same shape) that a draw lies below these values."""
         return np.asarray(self._frozen().cdf(values))
 
+    def scores(self, values: ArrayLike) -> Floats:
+        """Return the standard normal scores (same shape) of values, exact in both tails."""
+        frozen = self._frozen()
+        below, above = frozen.cdf(values), frozen.sf(values)
+        lower, upper = scipy.special.ndtri(below), -scipy.special.ndtri(above)
+        return np.asarray(np.where(below < above, lower, upper))
+
     def quadrature(self) -> tuple[Floats, Floats]:
         """Return nodes (SI units) and weights, which add up to 1, of integrals over it.
 

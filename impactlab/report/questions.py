@@ -88,7 +88,7 @@ def slow_model_sections(runs: xr.Dataset, folder: Path) -> list[Section]:
 
 def _slow_model(result: xr.Dataset) -> list[Table]:
     """Return the tables of statistics by two models, and of their runs and costs."""
-    from impactlab.study.multifidelity import stated  # late: the other questions do without
+    from impactlab.study.multifidelity_answer import stated  # late: the other questions do without
 
     rows: list[Row] = []
     for row, response in enumerate(result["response"].values):
@@ -115,7 +115,29 @@ def _slow_model(result: xr.Dataset) -> list[Table]:
     ]
     if "slow_index" in result:
         tables.insert(1, _slow_indices(result))
+    if "prediction" in result:
+        tables.insert(0, _predictions(result))
     return tables
+
+
+def _predictions(result: xr.Dataset) -> Table:
+    """Return one row per point and response: its prediction, or why there is none."""
+    from impactlab.study.multifidelity_prediction import interval_text, predicted_at
+
+    rows: list[Row] = []
+    for point in range(result.sizes["point"]):
+        for response in result["response"].values:
+            there = result.sel(response=response).isel(point=point)
+            values, reason = (
+                there["prediction"].values.tolist(),
+                str(there["prediction_refusal"].item()),
+            )
+            text = interval_text(values, str(there["response_units"].item()))
+            cell = Cell("none", "warning", reason) if reason else Cell(text, "number")
+            place = labels.sentence(", ".join(predicted_at(result, point)))
+            rows.append([place, labels.title(str(response)), cell])
+    title = "Predictions of the slow model, other parameters at their medians"
+    return Table(title, ["Point", "Response", "Prediction and interval"], rows)
 
 
 def _slow_indices(result: xr.Dataset) -> Table:

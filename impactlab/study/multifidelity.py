@@ -18,36 +18,39 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from impactlab.analysis.multifidelity import (
-    FEWEST_PAIRS,
-    FidelityEstimate,
-    Multifidelity,
-    best_ratio,
-)
+from impactlab.analysis.fidelity_estimates import FidelityEstimate
+from impactlab.analysis.multifidelity import FEWEST_PAIRS, Multifidelity, best_ratio
 from impactlab.files import opened, write_netcdf
 from impactlab.methods.runs import usable
 from impactlab.model.checks import integer
 from impactlab.model.cost import A_SECOND
-from impactlab.model.quantities import engineering, time
+from impactlab.model.quantities import time
 from impactlab.provenance import provenance
 from impactlab.study import MULTIFIDELITY, RARE_EVENT
 from impactlab.study.design import design
 from impactlab.study.engine import Engine, with_one_client
 from impactlab.study.execute import execute
+from impactlab.study.multifidelity_answer import FidelityVerdict, answer
 from impactlab.study.multifidelity_indices import (
     check_independent,
     number_of_runs,
-    sensitivity,
     slow_indices,
+)
+from impactlab.study.multifidelity_prediction import (
+    points_of,
+    predict_options,
+    predictions,
+    score_columns,
 )
 from impactlab.study.ownership import study_file
 from impactlab.study.rare_event import ScoreRuns
 from impactlab.study.schema.declarations import AnyStudy, ImpactStudy
+from impactlab.study.schema.prediction_points import Columns
 from impactlab.study.schema.readers import slow_study
 from impactlab.study.solvers import solver_named
 from impactlab.types import Floats
 from impactlab.validation.fields import plain
-from impactlab.verdicts import Verdict, flagged
+from impactlab.verdicts import flagged
 
 log = logging.getLogger(__name__)
 
@@ -61,18 +64,6 @@ STATISTICS = (
 )
 
 
-class FidelityVerdict(Verdict):
-    """Verdicts on statistics of a slow model by runs of a fast one."""
-
-    USABLE = True, "every run has an answer, and the fast model saves slow runs"
-    LITTLE_SAVING = True, "the models hardly correlate: slow runs alone do as well"
-    MISSING_RUNS = (
-        False,
-        "runs without an answer, and their pairs, are left out: these may be the extreme ones",
-    )
-    NO_STATISTICS = False, "too few pairs have answers, or these do not vary"
-
-
 @with_one_client
 def multifidelity(
     study: AnyStudy,
@@ -84,21 +75,24 @@ def multifidelity(
     runs: int = 0,
     budget: float = 0.0,
     indices: bool = False,
+    predict: Mapping[str, Any] | None = None,
 ) -> xr.Dataset:
     """Return statistics of a study's responses by a slow model; see il.multifidelity.
 
     folder: of the study's results. high: without it, all settings are the study's. runs: of the
     fast model; 0: the best number. budget: in s of one core, from which the numbers of pairs and
-    runs follow; 0: none. indices: True for Sobol indices. Runs are kept in `folder`/multifidelity
+    runs follow; 0: none. indices: True for Sobol indices. predict: values of parameters at which
+    the slow model is predicted; without it, the study's. Runs are kept in `folder`/multifidelity
     and are not solved again.
 
-    Raises as ScoreRuns.of and for a slow model that the study cannot have, and ValueError for
-    settings out of range.
+    Raises as ScoreRuns.of, prediction_points and check_pairs, StudyError for a slow model that the
+    study cannot have, and ValueError for settings out of range.
     """
     owner = "multifidelity"
     if high is None and (section := study.multifidelity):
         high, pairs, runs, budget = section.high, section.pairs, section.runs, section.budget
         indices = section.indices
+        predict = predict or section.predict
     high = high or {}
     pairs = integer(owner, "pairs", pairs, FEWEST_PAIRS)
     runs = integer(owner, "runs", runs, 0)
@@ -107,6 +101,7 @@ def multifidelity(
     fast = ScoreRuns.of(study, folder, engine, f"{MULTIFIDELITY}/low")
     if indices:
         check_independent(fast)
+    points = points_of(study, predict or {}, pairs)
     declared = slow_study(fast.declared, high)
     first = design(declared, 0, 1).assign_attrs(histories=0, profiles=0)
     slow = replace(fast, declared=declared, first=first, folder=fast.folder.with_name("high"))
@@ -115,12 +110,7 @@ def multifidelity(
     pairs = FEWEST_PAIRS if budget else pairs
     scores = _scores(fast, pairs)
     costs = [_cost(model, scores) for model in (fast, slow)]
-    least = pairs * costs[1]
-    if budget and budget < least:
-        needed = f"{pairs} runs of the slow model alone need about {time(least)}"
-        raise ValueError(f"{owner}: budget = {time(budget)}: {needed}")
-    if least > 0.0:
-        log.info("%d runs of the slow model: about %s of one core", pairs, time(least))
+    _check_budget(budget, pairs, costs[1])
     outputs = [_outputs(model, scores) for model in (fast, slow)]
     ratio = _best_ratio(outputs[0].values, outputs[1].values, costs[1] / costs[0])
     if budget:
@@ -135,12 +125,16 @@ def multifidelity(
         study_file=study_file(study, folder),
         confidence=study.analysis.confidence,
         arguments="".join(f" {quote(f'{name}={plain(value)}')}" for name, value in high.items())
-        + f" --pairs {pairs} --runs {runs}{' --indices' * indices}",
+        + f" --pairs {pairs} --runs {runs}{' --indices' * indices}{predict_options(predict or {})}",
         high=", ".join(f"{name} {plain(value)}" for name, value in high.items()),
     )
     if indices:
         shares = slow_indices(fast, partial(_outputs, fast), _scores(fast, pairs), outputs[1])
         dataset, runs = dataset.merge(shares), runs + number_of_runs(scores.shape[1], pairs)
+    if points:
+        answers = _predictions(fast, points, *outputs)
+        answers["prediction"].attrs["stated"] = " ".join(predict or ())
+        dataset, runs = dataset.merge(answers), runs + answers.attrs["runs"]
     for name, value, units, meaning in (
         ("pairs", pairs, "1", "runs of the slow model"),
         ("runs", pairs + runs, "1", "runs solved, in all"),
@@ -149,7 +143,7 @@ def multifidelity(
         ("best_ratio", ratio, "1", "fast runs per slow run that serve the mean best"),
     ):
         dataset[name] = (), value, {"units": units, "long_name": meaning}
-    dataset.attrs["answer"] = _answer(dataset)
+    dataset.attrs["answer"] = answer(dataset)
     write_netcdf(dataset, folder / f"{MULTIFIDELITY}.nc", "multifidelity")
     return dataset
 
@@ -165,6 +159,16 @@ def question_answer(runs: xr.Dataset, folder: Path) -> str:
                 return str(stored.attrs["answer"])
     subject = f"with {slow}" if slow else "on the rare event"
     return f"No answer yet {subject}.\nCaution: `impactlab run` solves the runs that it needs."
+
+
+def _check_budget(budget: float, pairs: int, cost: float) -> None:
+    """Raise ValueError for a budget, in s, that does not pay for these pairs; log their cost."""
+    least = pairs * cost
+    if budget and budget < least:
+        needed = f"{pairs} runs of the slow model alone need about {time(least)}"
+        raise ValueError(f"multifidelity: budget = {time(budget)}: {needed}")
+    if least > 0.0:
+        log.info("%d runs of the slow model: about %s of one core", pairs, time(least))
 
 
 def _scores(model: ScoreRuns, runs: int) -> Floats:
@@ -184,8 +188,12 @@ def _cost(model: ScoreRuns, scores: Floats) -> float:
 
 def _outputs(model: ScoreRuns, scores: Floats) -> xr.DataArray:
     """Return the responses on (response, run), NaN where a run has no answer."""
-    solved = usable(execute(model.design(scores), model.folder, model.engine))
-    return solved.transpose("response", "run")
+    return _solved(model, model.design(scores))
+
+
+def _solved(model: ScoreRuns, design: xr.Dataset) -> xr.DataArray:
+    """Return the responses of a design on (response, run), NaN where a run has no answer."""
+    return usable(execute(design, model.folder, model.engine)).transpose("response", "run")
 
 
 def _best_ratio(low: Floats, high: Floats, cost_ratio: float) -> float:
@@ -198,14 +206,30 @@ def _best_ratio(low: Floats, high: Floats, cost_ratio: float) -> float:
     return min(max(ratios), cost_ratio + 1.0)  # half of all time at most
 
 
-def _models(low: Floats, high: Floats, confidence: float) -> Multifidelity | str:
+def _models(
+    low: Floats, high: Floats, confidence: float, inputs: Floats | None = None
+) -> Multifidelity | str:
     """Return both models, pairs and runs without an answer left out, or why there are none."""
     pairs, rest = np.isfinite(low[: high.size]) & np.isfinite(high), low[high.size :]
     low = np.concatenate([low[: high.size][pairs], rest[np.isfinite(rest)]])
+    inputs = None if inputs is None else inputs[pairs]
     try:
-        return Multifidelity(low=low, high=high[pairs], confidence=confidence)
+        return Multifidelity(low=low, high=high[pairs], confidence=confidence, inputs=inputs)
     except ValueError as error:
         return _reason(error)
+
+
+def _predictions(
+    model: ScoreRuns, points: Columns, low: xr.DataArray, high: xr.DataArray
+) -> xr.Dataset:
+    """Return the slow model's responses at points from both models' runs."""
+    inputs = score_columns(model, model.values(_scores(model, high.sizes["run"])))
+    confidence = model.declared.analysis.confidence
+    models = {
+        name: _models(low.values[row], high.values[row], confidence, inputs)
+        for row, name in enumerate(low["response"].values.tolist())
+    }
+    return predictions(model, partial(_solved, model), points, models)
 
 
 def _statistics(
@@ -312,78 +336,3 @@ def _verdict(models: Multifidelity | str, saving: float, missing: int) -> Fideli
     if missing:
         return FidelityVerdict.MISSING_RUNS
     return FidelityVerdict.USABLE if saving >= _LITTLE else FidelityVerdict.LITTLE_SAVING
-
-
-def _answer(result: xr.Dataset) -> str:
-    """Return the findings in sentences: first the mean of the response with a limit."""
-    limited = np.flatnonzero(np.isfinite(result["limit"].values))
-    leading = int(limited[0]) if limited.size else 0
-    pairs, runs = int(result["pairs"]), int(result["runs"])
-    name = str(result["response"].values[leading]).replace("_", " ")
-    mean = stated(result, leading, "mean")
-    lines = [
-        f"With {result.attrs['high']}, the {name} is {mean} in the mean "
-        f"({100 * result.attrs['confidence']:g} % interval), from {pairs:,} of these runs and "
-        f"{runs - pairs:,} of the study's."
-    ]
-    if not mean:
-        reason = result["refusal"].values[leading, 0]
-        lines = [f"No statistics of the {name} with {result.attrs['high']}: {reason}."]
-    for row, response in enumerate(result["response"].values):
-        parts = [f"mean {mean}"] if (mean := stated(result, row, "mean")) else []
-        if middle := stated(result, row, "median"):
-            parts.append(f"median {middle}")
-        if spread := stated(result, row, "standard_deviation"):
-            parts.append(f"standard deviation {spread}")
-        if chance := stated(result, row, "exceedance"):
-            units = str(result["response_units"].values[row])
-            parts.append(f"above {engineering(float(result['limit'][row]), units)} with {chance}")
-        parts.append(f"correlation {float(result['correlation'][row]):.3f}")
-        if parts[1:]:
-            lines.append(f"{str(response).replace('_', ' ').capitalize()}: {'; '.join(parts)}.")
-    if "slow_index" in result:
-        lines.append(sensitivity(result, leading))
-    return "\n".join(
-        [*lines, *_costs(result, leading, has_mean=bool(stated(result, leading, "mean")))]
-    )
-
-
-def _costs(result: xr.Dataset, leading: int, *, has_mean: bool) -> list[str]:
-    """Return what the fast model saves, the best numbers of runs and a caution, in sentences."""
-    lines = []
-    pairs, runs = int(result["pairs"]), int(result["runs"])
-    slow, fast = float(result["slow_seconds"]), float(result["fast_seconds"])
-    saving = float(result["saving"].values[leading, 0])
-    if has_mean:
-        alone, spent = ceil(saving * pairs), pairs * slow + (runs - pairs) * fast
-        times = f", about {time(alone * slow)} of one core; both models took {time(spent)}"
-        lines.append(
-            f"Saving: a mean as accurate takes {alone:,} of the slow runs alone"
-            f"{times if slow > 0.0 else ''}."
-        )
-    if slow > 0.0:
-        lines.append(
-            f"Allocation: a slow run costs as much as {slow / fast:,.0f} fast ones, and "
-            f"{float(result['best_ratio']):,.0f} fast runs per slow one serve the mean best."
-        )
-    worst = list(FidelityVerdict)[int(result["verdict"])]
-    if worst is not FidelityVerdict.USABLE:
-        count = int(result["missing"].max())
-        most = f" (up to {count} a response)" if worst is FidelityVerdict.MISSING_RUNS else ""
-        lines.append(f"Caution: {worst.meaning}{most}.")
-    return lines
-
-
-def stated(result: xr.Dataset, row: int, statistic: str) -> str:
-    """Return a statistic of a response with unit and interval; "" where there is none."""
-    values = result["estimate"].sel(statistic=statistic).values[row].tolist()
-    if np.isnan(values[0]):
-        return ""
-    if statistic == "exceedance":
-        texts = [[f"{number:.{digits}g}" for number in values] for digits in (2, 3, 4)]
-        value, low, high = next((text for text in texts if len({*text}) == 3), texts[-1])
-        return f"probability {value} ({low} to {high})"
-    units = str(result["response_units"].values[row])
-    value, low, high = (engineering(number, units) for number in values)
-    number, _, unit = low.partition(" ")
-    return f"{value} ({number if high.endswith(f' {unit}') else low} to {high})"

@@ -1,6 +1,7 @@
 """The probability of a rare event from runs of a study's solver, kept and found again on disk."""
 
 import logging
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -80,12 +81,14 @@ class ScoreRuns:
 
     def design(self, scores: Floats) -> xr.Dataset:
         """Return the design at standard normal scores (runs, parameter)."""
-        runs = self.first.isel(run=np.zeros(len(scores), int))
-        columns = {
-            name: ("run", column, self.first[name].attrs)
-            for name, column in self.values(scores).items()
-        }
-        numbers = ("run", np.arange(len(scores)), self.first["run"].attrs)
+        return self.design_of(self.values(scores))
+
+    def design_of(self, values: Mapping[str, np.ndarray]) -> xr.Dataset:
+        """Return the design at values, or words, of each varied parameter, (runs,)."""
+        size = len(next(iter(values.values())))
+        runs = self.first.isel(run=np.zeros(size, int))
+        columns = {name: ("run", column, self.first[name].attrs) for name, column in values.items()}
+        numbers = ("run", np.arange(size), self.first["run"].attrs)
         return runs.assign_coords({"run": numbers} | columns)
 
     def deviations(self, scores: Floats) -> Floats:

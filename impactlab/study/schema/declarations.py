@@ -181,6 +181,7 @@ class SlowModel(FileSection):
     high: values of the slow model's parameters in place of the study's. pairs: number of its runs,
     and runs of the study's model; 0: the best number. budget: time of one core in s, in place of
     pairs; 0: none. indices: True for Sobol indices, which take further runs of the study's model.
+    predict: values of drawn parameters at which the slow model's answers are predicted.
     """
 
     high: Annotated[dict[StrictStr, Any], Field(min_length=1)]
@@ -188,6 +189,7 @@ class SlowModel(FileSection):
     runs: Annotated[Whole, Field(ge=0, le=1_000_000)] = 0
     budget: Annotated[_Seconds, Field(ge=0)] = 0.0
     indices: StrictBool = False
+    predict: dict[StrictStr, Any] = Field(default_factory=dict)
 
     def __str__(self) -> str:
         """Return the values of the slow model in words."""

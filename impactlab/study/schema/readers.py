@@ -25,6 +25,7 @@ from impactlab.study.schema.declarations import (
     StudyFile,
     Verification,
 )
+from impactlab.study.schema.prediction_points import prediction_points
 from impactlab.study.schema.table_file import TableStudy, table_study
 from impactlab.study.schema.yaml_file import Source, read_mapping, read_source, text_of
 from impactlab.validation.errors import Problem, StudyError, unknown
@@ -121,6 +122,8 @@ def _check_slow_model(study: AnyStudy) -> None:
     if isinstance(study, FunctionStudy) and not section.runs:
         reason = "must be stated, because what functions cost is not known"
         raise StudyError(Problem(path, f"{key}.runs", reason))
+    if section.predict:
+        prediction_points(study, section.predict)
     try:
         slow_study(study, section.high)
     except StudyError as error:
