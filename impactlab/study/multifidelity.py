@@ -37,6 +37,7 @@ from impactlab.study.multifidelity_indices import (
     slow_indices,
 )
 from impactlab.study.multifidelity_prediction import (
+    check_names,
     points_of,
     predict_options,
     predictions,
@@ -132,6 +133,7 @@ def multifidelity(
         shares = slow_indices(fast, partial(_outputs, fast), _scores(fast, pairs), outputs[1])
         dataset, runs = dataset.merge(shares), runs + number_of_runs(scores.shape[1], pairs)
     if points:
+        check_names(points, dataset)
         answers = _predictions(fast, points, *outputs)
         answers["prediction"].attrs["stated"] = " ".join(predict or ())
         dataset, runs = dataset.merge(answers), runs + answers.attrs["runs"]

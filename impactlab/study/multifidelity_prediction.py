@@ -28,6 +28,14 @@ def points_of(study: AnyStudy, predict: Mapping[str, Any], pairs: int) -> Column
     return prediction_points(study, predict) if predict else {}
 
 
+def check_names(points: Columns, dataset: xr.Dataset) -> None:
+    """Raise ValueError for a parameter with the name of a variable of the results."""
+    for name in points:
+        if name in dataset.variables or name in dataset.dims:
+            reason = f"the results have a variable {name}: give the parameter another name"
+            raise ValueError(f"multifidelity: predict: {reason}")
+
+
 def score_columns(model: ScoreRuns, values: Columns) -> Floats:
     """Return the standard normal scores of values of each varied parameter, (runs, parameter)."""
     varied = model.sampling.varied

@@ -168,3 +168,63 @@ def test_what_gives_no_statistics_is_refused(changes, message):
 def test_a_limit_that_hardly_a_run_exceeds_is_refused():
     with pytest.raises(ValueError, match="0 of 40 runs of high exceed it"):
         il.Multifidelity(**ishigami_pair(1, 0.9)).exceedance(100.0)
+
+
+def predicted_pair(seed, rest, pairs=20, points=20):
+    """Return models of three inputs, points among the pairs, and what the fast and slow tell."""
+    rng = np.random.default_rng([9, seed])
+    inputs = rng.normal(size=(pairs, 3))
+    places = rng.normal(size=(200, 3))
+    within = (places > inputs.min(axis=0)) & (places < inputs.max(axis=0))
+    places = places[within.all(axis=1)][:points]
+    every = np.concatenate([inputs, places])
+    low = every @ [1.0, 0.6, 0.3]
+    high = 2 * low + rest(every, rng)
+    low_runs = np.append(low[:pairs], rng.normal(size=pairs))
+    models = il.Multifidelity(low=low_runs, high=high[:pairs], inputs=inputs)
+    return models.prediction(places, low[pairs:]), high[pairs:]
+
+
+@pytest.mark.parametrize(
+    ("rest", "width"),
+    [
+        (lambda x, _: 0.3 * x[:, 0] ** 2 + 0.2 * x[:, 1] * x[:, 2], 1.2),
+        (lambda _, rng: 0.3 * rng.normal(size=len(_)), 2.5),
+    ],
+)
+def test_predictions_are_covered_and_narrower_than_a_constant_correction(rest, width):
+    """Of a smooth rest, and of noise, which no process predicts: the interval must not shrink."""
+    answers = [predicted_pair(seed, rest) for seed in range(16)]
+    covered = [(a.low <= exact) & (exact <= a.high) for a, exact in answers]
+    assert np.concatenate(covered).mean() > 0.93
+    assert np.median(np.concatenate([a.high - a.low for a, _ in answers])) < width
+
+
+def test_a_line_in_the_fast_model_is_predicted_exactly():
+    answer, exact = predicted_pair(1, lambda x, _: np.full(len(x), -3.0))
+    np.testing.assert_allclose(answer.value, exact, rtol=1e-12, atol=1e-12)
+    assert (answer.low <= exact + 1e-12).all()
+    assert (exact - 1e-12 <= answer.high).all()
+    assert (answer.high - answer.low).max() < 1e-12
+
+
+def test_what_cannot_be_predicted_is_refused():
+    rng = np.random.default_rng(4)
+    inputs, low = rng.uniform(size=(40, 2)), rng.normal(size=100)
+    pair = {"low": low, "high": low[:40] + inputs[:, 0]}
+    models = il.Multifidelity(**pair, inputs=inputs)
+    answer = models.prediction([[0.5, 1.2], [0.5, 0.5], [-0.1, 0.5]], low=[0.0, 0.1, 0.0])
+    assert np.isnan([answer.value, answer.low, answer.high]).tolist() == [[True, False, True]] * 3
+    assert answer.refusal == [
+        "parameter 2 is beyond the pairs'",
+        "",
+        "parameter 1 is beyond the pairs'",
+    ]
+    for changes, points, message in (
+        ({"inputs": inputs, "confidence": 0.98}, [[0.5, 0.5]], "98 % interval needs 49 pairs"),
+        ({}, [[0.5, 0.5]], "state the `inputs` of the pairs"),
+        ({"inputs": inputs}, [[0.5]], r"points: has the shape \(1, 1\): must be \(1, 2\)"),
+        ({"inputs": inputs[1:]}, [[0.5, 0.5]], r"inputs: has the shape \(39, 2\)"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            il.Multifidelity(**pair, **changes).prediction(points, low=[0.0])

@@ -1,5 +1,6 @@
 """Statistics of a study's slow model: stored runs, workers, missing runs, budgets, refusals."""
 
+import sys
 from html import unescape
 
 import numpy as np
@@ -279,3 +280,94 @@ def test_values_that_a_study_cannot_have_are_refused_at_their_key(tmp_path):
     ):
         with pytest.raises(il.StudyError, match=reason):
             il.multifidelity(impacts(tmp_path), high, workers=1)
+
+
+def with_words(x, noise, law, count, power):
+    return (1 + x) ** power + 0.1 * noise + (law == "b") + 0.1 * count
+
+
+def mixed(folder, **changes):
+    varied = {"x": il.Uniform(0, 1), "noise": il.Normal(0, 1), "power": 1.7}
+    varied |= {"law": il.Choice(["a", "b", "c"]), "count": il.Integers(1, 5)}
+    sampling = il.Sobol(base_samples=64, parameters=varied)
+    return study(folder, with_words, sampling=sampling, **changes)
+
+
+def test_answers_of_the_slow_model_are_predicted_where_pairs_are(tmp_path):
+    """Words and whole numbers among the parameters, the noise at its median."""
+    points = {"x": [0.5, 2, 0.9], "law": "b", "count": [2, 3, 3]}
+    results = [
+        il.multifidelity(
+            mixed(tmp_path / str(n)), {"power": 2}, runs=500, workers=n, predict=points
+        )
+        for n in (1, 2)
+    ]
+    np.testing.assert_array_equal(results[0].prediction, results[1].prediction)
+    answer = results[0].sel(response="value")
+    assert answer.prediction.x.values.tolist() == points["x"]
+    assert answer.prediction.noise.values.tolist() == [0.0] * 3
+    exact = [with_words(x, 0.0, "b", count, 2) for x, count in ((0.5, 2), (0.9, 3))]
+    value, low, high = answer.prediction.isel(point=[0, 2]).values.T
+    np.testing.assert_allclose(value, exact, atol=0.03)
+    assert ((low <= exact) & (exact <= high)).all()
+    assert answer.prediction[1].isnull().all()
+    assert answer.prediction_refusal.values[1].startswith("x 2 is beyond the pairs, 0.0")
+    assert "Prediction: at x 0.5, law b, count 2 the value is 3.4" in results[0].answer
+    assert "--predict x=0.5,2,0.9 --predict law=b --predict count=2,3,3" in results[0].arguments
+    page = unescape((tmp_path / "1" / "power" / "multifidelity.html").read_text("utf-8"))
+    assert "Predictions of the slow model" in page
+    assert "x 2 is beyond the pairs" in page
+    section = {"high": {"power": 2}, "runs": 500, "predict": points}
+    same = il.multifidelity(mixed(tmp_path / "2", multifidelity=section), workers=1)
+    np.testing.assert_array_equal(same.prediction, results[0].prediction)
+
+
+@pytest.mark.parametrize(
+    ("points", "reason"),
+    [
+        ({"law": "b", "power": 1}, "predict: unknown drawn parameter; choose from x, noise"),
+        ({"x": 0.5}, "predict: words have no median: state law, a, b, c"),
+        ({"law": "z"}, "predict.law = 'z': unknown word"),
+        ({"law": "a", "count": 2.5}, "predict.count = 2.5: is not drawn: steps of 1 from 1 to 5"),
+        ({"law": "a", "x": [0, 1], "noise": [1, 2, 3]}, "predict: lists of 2 and 3 values"),
+        ({"law": "a", "x": "1 kg"}, "predict.x = '1 kg'"),
+    ],
+)
+def test_points_that_are_never_drawn_are_refused_at_their_key(tmp_path, points, reason):
+    section = {"high": {"power": 2}, "runs": 500, "predict": points}
+    with pytest.raises(il.StudyError, match=f"multifidelity.{reason}"):
+        mixed(tmp_path, multifidelity=section)
+
+
+def test_predictions_alone_need_scikit_learn_and_enough_pairs_with_answers(tmp_path, monkeypatch):
+    settings = {"high": {"power": 2}, "runs": 500, "workers": 1}
+    failing = study(tmp_path, sometimes_failing)
+    answer = il.multifidelity(failing, **settings, pairs=20, predict={"x": 0.5})
+    assert answer.prediction.isnull().all()
+    assert answer.prediction_refusal.item() == "has 18 runs: at least 20"
+    monkeypatch.setitem(sys.modules, "sklearn", None)
+    il.multifidelity(failing, **settings)
+    with pytest.raises(OSError, match=r"scikit-learn: pip install 'impactlab\[kriging\]'"):
+        il.multifidelity(failing, **settings, predict={"x": 0.5})
+
+
+@pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+def test_impacts_are_predicted_with_correlated_parameters(tmp_path):
+    parameters = {
+        "velocity": il.Uniform("1.5 m/s", "2.5 m/s"),
+        "beam_depth": il.Uniform("26 mm", "29 mm"),
+    }
+    sampling = il.Pawn(
+        samples=128, parameters=parameters, correlations=[("velocity", "beam_depth", 0.6)]
+    )
+    points = {"velocity": ["1.8 m/s", 2.2], "beam_depth": "27 mm"}
+    result = il.multifidelity(
+        impacts(tmp_path, sampling=sampling), FINE, pairs=20, predict=points, workers=1
+    )
+    varied = {"velocity": [1.8, 2.2], "beam_depth": [27e-3] * 2}
+    plain = il.simulate_many(
+        il.paper_impact(), il.Discretisation(**FINE), duration="0.8 ms", varied=varied
+    )
+    _, low, high = result.prediction.sel(response="peak_force").values.T
+    assert ((low <= plain.peak_force) & (plain.peak_force <= high)).all()
+    assert (high - low < 0.02 * low).all()
