@@ -59,6 +59,12 @@ class FidelityPrediction:
         Lower and upper ends of the intervals, (points,).
     refusal : list of str
         Reason why a point has no prediction; "" where it has one.
+
+    Examples
+    --------
+    >>> answer = il.FidelityPrediction(value=[2.0], low=[1.9], high=[2.2], refusal=[""])
+    >>> answer.high[0] - answer.low[0] < 0.4
+    True
     """
 
     value: Floats

@@ -55,22 +55,26 @@ def predictions(
     there are none. Points beyond all pairs are not solved.
     """
     scores = score_columns(model, points)
-    reasons = {name: _refusals(model, models_, points, scores) for name, models_ in models.items()}
+    reasons = {
+        name: _refusals(model, fidelities, points, scores) for name, fidelities in models.items()
+    }
     rows = [row for row in range(len(scores)) if not all(texts[row] for texts in reasons.values())]
     fast = np.full((len(models), len(scores)), np.nan)
     if rows:
         columns = {name: values[rows] for name, values in points.items()}
         fast[:, rows] = solved(model.design_of(columns)).values
     ends = np.full((*fast.shape, 3), np.nan)
-    for response, (texts, both) in enumerate(zip(reasons.values(), models.values(), strict=True)):
+    for response, (texts, fidelity) in enumerate(
+        zip(reasons.values(), models.values(), strict=True)
+    ):
         for row in rows:
             if not texts[row] and np.isnan(fast[response, row]):
                 texts[row] = "the study's model has no answer there"
         inner = [row for row in rows if not texts[row]]
-        if isinstance(both, str) or not inner:
+        if isinstance(fidelity, str) or not inner:
             continue
         try:
-            answers = both.prediction(scores[inner], fast[response, inner])
+            answers = fidelity.prediction(scores[inner], fast[response, inner])
         except ValueError as error:  # too few of the pairs have answers
             for row in inner:
                 texts[row] = str(error).partition(": ")[2]

@@ -193,7 +193,7 @@ def predicted_pair(seed, rest, pairs=20, points=20):
     ],
 )
 def test_predictions_are_covered_and_narrower_than_a_constant_correction(rest, width):
-    """Of a smooth rest, and of noise, which no process predicts: the interval must not shrink."""
+    """The rest is smooth, or noise, which no process predicts: intervals must not shrink."""
     answers = [predicted_pair(seed, rest) for seed in range(16)]
     covered = [(a.low <= exact) & (exact <= a.high) for a, exact in answers]
     assert np.concatenate(covered).mean() > 0.93
