@@ -26,7 +26,7 @@ def prediction_points(study: AnyStudy, predict: Mapping[str, Any]) -> Columns:
     for name, data in predict.items():
         if name not in varied:
             reason = unknown("drawn parameter", name, varied)
-            problems.append(Problem(path, key, reason))
+            problems.append(Problem(path, f"{key}.{name}", reason))
             continue
         values = data if isinstance(data := plain(data), list) else [data]
         try:

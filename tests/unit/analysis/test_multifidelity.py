@@ -1,14 +1,19 @@
 """Statistics of a slow model by runs of a fast one, on a pair with known answers."""
 
 from functools import cache
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from known_indices import INDICES
 
 import impactlab as il
 from impactlab.analysis.multifidelity_indices import first_order, slow_index, total_order
+from impactlab.model.case_table import case_table
+from impactlab.solve import solve
 
+ROOT = Path(__file__).parents[3]
 KNOWN = INDICES["ishigami"]
 VARIANCE = KNOWN.variance
 RUNS, LOW_RUNS, REPETITIONS = 40, 400, 150
@@ -228,3 +233,26 @@ def test_what_cannot_be_predicted_is_refused():
     ):
         with pytest.raises(ValueError, match=message):
             il.Multifidelity(**pair, **changes).prediction(points, low=[0.0])
+
+
+def test_solid_impacts_left_out_of_the_pairs_are_predicted():
+    """The corrected beam and stored 3-D runs, whose indentations scatter by 3 %."""
+    runs = pd.read_csv(ROOT / "docs" / "multifidelity_runs.csv")
+    inputs, high = runs.iloc[:, :-2], runs["maximum_indentation"].to_numpy()
+    cases = case_table(
+        il.corrected_impact("5 m/s"),
+        il.Discretisation(nodes=65),
+        duration=0.2e-3,
+        varied={name: column.to_numpy() for name, column in inputs.items()},
+    )
+    low = solve(cases)["maximum_indentation"]
+    pairs = il.Multifidelity(low=low, high=high[:40], inputs=inputs[:40])
+    answers = pairs.prediction(inputs[40:], low[40:])
+    rows = np.isfinite(answers.value)
+    assert rows.mean() > 0.5
+    value, bottom, top, exact = (
+        values[rows] for values in (answers.value, answers.low, answers.high, high[40:])
+    )
+    assert ((bottom <= exact) & (exact <= top)).mean() > 0.9
+    assert np.sqrt(np.mean((value / exact - 1) ** 2)) < 0.004
+    assert np.median((top - bottom) / exact) < 0.025

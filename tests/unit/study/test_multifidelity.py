@@ -325,7 +325,7 @@ def test_answers_of_the_slow_model_are_predicted_where_pairs_are(tmp_path):
 @pytest.mark.parametrize(
     ("points", "reason"),
     [
-        ({"law": "b", "power": 1}, "predict: unknown drawn parameter; choose from x, noise"),
+        ({"law": "b", "power": 1}, "predict.power: unknown drawn parameter; choose from x, noise"),
         ({"x": 0.5}, "predict: words have no median: state law, a, b, c"),
         ({"law": "z"}, "predict.law = 'z': unknown word"),
         ({"law": "a", "count": 2.5}, "predict.count = 2.5: is not drawn: steps of 1 from 1 to 5"),
