@@ -25,12 +25,11 @@ from impactlab.methods.distributions import (
     Choice,
     Fixed,
     Integers,
-    is_frozen,
-    unfrozen,
 )
 from impactlab.methods.entries import Distribution, Entry
 from impactlab.methods.record import Indices
 from impactlab.methods.runs import Sample
+from impactlab.methods.scipy_distributions import is_frozen, unfrozen
 from impactlab.model.parameters import PROFILE_FIXED, SPHERES_FIXED, Parameter, Value
 from impactlab.types import Floats
 from impactlab.validation.errors import unknown

@@ -7,7 +7,7 @@ depends on the machine.
 
 import logging
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 from math import ceil
@@ -118,8 +118,7 @@ def multifidelity(
         most = int(budget / (costs[1] + ratio * costs[0]))
         pairs = min(max(most, FEWEST_PAIRS), _MOST_PAIRS)
         outputs[1] = _outputs(slow, _scores(fast, pairs))
-    runs = runs or min(ceil(ratio * pairs), _MOST_RUNS)
-    runs = max(runs, 2 * pairs)
+    runs = max(runs or min(ceil(ratio * pairs), _MOST_RUNS), 2 * pairs)
     outputs[0] = _outputs(fast, _scores(fast, runs))
     dataset = _dataset(fast, *outputs).assign_attrs(
         study.attributes() | provenance(),
@@ -134,8 +133,7 @@ def multifidelity(
         dataset, runs = dataset.merge(shares), runs + number_of_runs(scores.shape[1], pairs)
     if points:
         check_names(points, dataset)
-        answers = _predictions(fast, points, *outputs)
-        answers["prediction"].attrs["stated"] = " ".join(predict or ())
+        answers = _predictions(fast, points, *outputs, stated=predict or ())
         dataset, runs = dataset.merge(answers), runs + answers.attrs["runs"]
     for name, value, units, meaning in (
         ("pairs", pairs, "1", "runs of the slow model"),
@@ -222,16 +220,26 @@ def _models(
 
 
 def _predictions(
-    model: ScoreRuns, points: Columns, low: xr.DataArray, high: xr.DataArray
+    model: ScoreRuns,
+    points: Columns,
+    low: xr.DataArray,
+    high: xr.DataArray,
+    *,
+    stated: Iterable[str],
 ) -> xr.Dataset:
-    """Return the slow model's responses at points from both models' runs."""
+    """Return the slow model's responses at points from both models' runs.
+
+    stated: names of the parameters that are not at their medians.
+    """
     inputs = score_columns(model, model.values(_scores(model, high.sizes["run"])))
     confidence = model.declared.analysis.confidence
     models = {
         name: _models(low.values[row], high.values[row], confidence, inputs)
         for row, name in enumerate(low["response"].values.tolist())
     }
-    return predictions(model, partial(_solved, model), points, models)
+    answers = predictions(model, partial(_solved, model), points, models)
+    answers["prediction"].attrs["stated"] = " ".join(stated)
+    return answers
 
 
 def _statistics(
