@@ -38,6 +38,7 @@ from impactlab.validation.fields import LABEL, Names, Stated, Whole, at_key, by_
 MOST_RUNS = 2_000_000_000
 DRAWN_TOGETHER = 10_000_000
 """Most runs of a sample that is drawn as a whole, also where a block of it is asked for."""
+_SLOWLY_DRAWN = 100_000  # runs that take a second or more
 log = logging.getLogger(__name__)
 
 _EDGE = 2.0**-31
@@ -312,7 +313,8 @@ class DrawnTogether(RandomSample):
 
     @cached_property
     def _kept_draws(self) -> Floats:
-        log.info("method %s draws all %s runs at once", self.method, f"{self.runs:,}")
+        if self.runs > _SLOWLY_DRAWN:
+            log.info("method %s draws all %s runs at once", self.method, f"{self.runs:,}")
         return self.all_draws()
 
     def draws(self, start: int = 0, stop: int | None = None) -> Floats:
