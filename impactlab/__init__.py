@@ -38,8 +38,7 @@ What the runs say
     table           runs or indices as a pandas DataFrame
     plot            figures: plot.run, plot.response, plot.sobol, plot.animate, ...
     load_surrogate  predictions without solving
-    Multifidelity   a slow model by a fast one: FidelityEstimate of statistics, FidelityPrediction of
-                    answers; multifidelity: of a study
+    Multifidelity   a slow model by a fast one (FidelityEstimate, FidelityPrediction); multifidelity
     compare         measurements beside the runs, with verdicts
     compare_studies studies beside each other, on one page
     witness         one impact in 3-D finite elements beside the beam models
