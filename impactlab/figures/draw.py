@@ -10,7 +10,9 @@ from typing import Any
 
 import xarray as xr
 from matplotlib import rcParams
-from matplotlib.backend_bases import get_registered_canvas_class
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from impactlab.figures import animation, data, findings, labels, record, style
@@ -188,9 +190,12 @@ def save(
         path = folder / f"{name}.{kind}"
         with style.applied(), replaced(path) as unfinished:
             # Figure.savefig would draw each file twice
-            canvas: Any = get_registered_canvas_class(kind)(figure)
+            canvas: Any = _CANVASES[kind](figure)
             figure.dpi = rcParams["savefig.dpi"]
             getattr(canvas, f"print_{kind}")(unfinished, metadata=metadata[kind])
             figure.set_layout_engine("none")  # laid out once: that takes most of the time
         paths.append(path)
     return paths
+
+
+_CANVASES = {"svg": FigureCanvasSVG, "png": FigureCanvasAgg, "pdf": FigureCanvasPdf}
