@@ -90,14 +90,15 @@ def predicted(
     low: of all runs. Raises as check_pairs.
     """
     check_pairs(owner, high.size, confidence)
-    columns = outside(inputs, points)
+    pairs = low[: high.size]
+    columns = outside(np.column_stack([inputs, pairs]), np.column_stack([points, fast]))
     inner = [row for row, beyond in enumerate(columns) if not beyond]
     ends = np.full((len(points), 3), np.nan)
     if inner:
-        pairs = inputs, low[: high.size], high
-        ends[inner] = corrected(*pairs, points[inner], fast[inner], confidence)
+        ends[inner] = corrected(inputs, pairs, high, points[inner], fast[inner], confidence)
+    names = [f"parameter {number + 1}" for number in range(inputs.shape[1])] + ["the fast output"]
     refusal = [
-        f"parameter {beyond[0] + 1} is beyond the pairs'" if beyond else "" for beyond in columns
+        f"{names[beyond[0]]} is beyond those of the pairs" if beyond else "" for beyond in columns
     ]
     return FidelityPrediction(ends[:, 0], ends[:, 1], ends[:, 2], refusal)
 

@@ -318,7 +318,7 @@ class Multifidelity:
         Returns
         -------
         FidelityPrediction
-            In the unit of the output, NaN beyond the pairs' range of a parameter.
+            In the unit of the output, NaN beyond the pairs' range of a parameter or fast output.
 
         Raises
         ------
@@ -345,7 +345,7 @@ class Multifidelity:
         >>> models = il.Multifidelity(low=low, high=low[:40] + 0.1 * inputs[:, 0], inputs=inputs)
         >>> answer = models.prediction([[0.5, 0.5], [0.5, 2.0]], low=[1.0, 2.5])
         >>> bool(answer.low[0] <= 1.05 <= answer.high[0]), answer.refusal[1]
-        (True, "parameter 2 is beyond the pairs'")
+        (True, 'parameter 2 is beyond those of the pairs')
         """
         owner = "Multifidelity.prediction"
         if self.inputs is None:

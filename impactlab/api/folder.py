@@ -1,4 +1,4 @@
-"""The steps of a study in its folder of results, as methods: the functions behind the commands."""
+"""Methods for the steps of a study in its results folder: the functions behind the commands."""
 
 from __future__ import annotations
 

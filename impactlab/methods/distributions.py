@@ -225,18 +225,28 @@ class Steps(Distribution):
         return step
 
     @property
-    def levels(self) -> np.ndarray[Any, Any]:
-        """All values that may be drawn, in rising order, in SI units."""
-        return np.linspace(self.low, self.high, round((self.high - self.low) / self.step) + 1)
+    def count(self) -> int:
+        """Number of the values that may be drawn."""
+        steps: int = round((self.high - self.low) / self.step)
+        return steps + 1
+
+    def at_steps(self, steps: Any) -> Any:
+        """Return the values (same shape) that so many steps lead to from `low`."""
+        values = self.low + steps * ((self.high - self.low) / (self.count - 1))
+        return np.where(steps == self.count - 1, self.high, values)
+
+    def steps_to(self, values: ArrayLike) -> Floats:
+        """Return the numbers of steps (same shape) to the nearest values that may be drawn."""
+        return np.asarray(np.rint((np.asarray(values) - self.low) / self.step))
 
     def _frozen(self) -> Any:
         """Return the distribution of the number of steps above `low`."""
-        return scipy.stats.randint(0, self.levels.size)
+        return scipy.stats.randint(0, self.count)
 
     def quantile(self, probability: ArrayLike) -> Any:
         """Return the values (same shape) below or at which a draw lies at least so often."""
         steps = np.asarray(self._frozen().ppf(probability)).astype(np.int64)
-        return self.levels[np.maximum(steps, 0)]
+        return self.at_steps(np.maximum(steps, 0))
 
     def at_scores(self, scores: ArrayLike) -> Any:
         """Return the values (same shape) at standard normal scores."""
@@ -245,12 +255,11 @@ class Steps(Distribution):
     def cumulative(self, values: ArrayLike) -> Floats:
         """Return the probabilities (same shape) that a draw lies at or below these values."""
         steps = (np.asarray(values) - self.low) / self.step
-        return np.asarray(self._frozen().cdf(steps + _ROUNDING * self.levels.size))
+        return np.asarray(self._frozen().cdf(steps + _ROUNDING * self.count))
 
     def scores(self, values: ArrayLike) -> Floats:
         """Return the scores (same shape) in the middle of those of each value."""
-        steps = np.rint((np.asarray(values) - self.low) / self.step)
-        return np.asarray(scipy.special.ndtri((steps + 0.5) / self.levels.size))
+        return np.asarray(scipy.special.ndtri((self.steps_to(values) + 0.5) / self.count))
 
 
 @dataclass(frozen=True)
@@ -275,10 +284,9 @@ class Integers(Steps):
     high: Annotated[Quantity, PlainValidator(read_whole)]
     step: Annotated[Whole, Field(ge=1)] = 1
 
-    @property
-    def levels(self) -> np.ndarray[Any, Any]:
-        """All numbers that may be drawn, in rising order."""
-        return np.asarray(np.rint(super().levels)).astype(np.int64)
+    def at_steps(self, steps: Any) -> Any:
+        """Return the whole numbers (same shape) that so many steps lead to from `low`."""
+        return int(self.low) + int(self.step) * np.asarray(steps, dtype=np.int64)
 
 
 @dataclass(frozen=True)

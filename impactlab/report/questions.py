@@ -128,11 +128,8 @@ def _predictions(result: xr.Dataset) -> Table:
     for point in range(result.sizes["point"]):
         for response in result["response"].values:
             there = result.sel(response=response).isel(point=point)
-            values, reason = (
-                there["prediction"].values.tolist(),
-                str(there["prediction_refusal"].item()),
-            )
-            text = interval_text(values, str(there["response_units"].item()))
+            reason, units = (str(there[n].item()) for n in ("prediction_refusal", "response_units"))
+            text = interval_text(there["prediction"].values.tolist(), units)
             cell = Cell("none", "warning", reason) if reason else Cell(text, "number")
             place = labels.sentence(", ".join(predicted_at(result, point)))
             rows.append([place, labels.title(str(response)), cell])

@@ -80,6 +80,8 @@ def predictions(
                 texts[row] = str(error).partition(": ")[2]
             continue
         ends[response, inner] = np.column_stack([answers.value, answers.low, answers.high])
+        for row, reason in zip(inner, answers.refusal, strict=True):
+            texts[row] = reason
     about = {"units": "1", "long_name": "answer of the slow model, in units of the response"}
     attrs = {name: model.first[name].attrs for name in points}
     return xr.Dataset(
@@ -129,7 +131,7 @@ def interval_text(values: list[float], units: str) -> str:
 
 
 def predicted_at(result: xr.Dataset, point: int) -> list[str]:
-    """Return the parameters that were stated, with their values at a point, in words."""
+    """Return the stated parameters with their values at a point, in words."""
     texts = []
     for name in result["prediction"].attrs["stated"].split():
         column = result[name]

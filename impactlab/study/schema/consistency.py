@@ -38,6 +38,7 @@ Reasons = Iterator[tuple[str, str]]
 
 _MESH = ("nodes", "points", "rule", "beam_span", "beam_depth", *SECTION)
 """Parameters that move the places at which profiles are given."""
+_MANY = 1000  # values that are no longer checked one by one
 _TAILS = np.array([1e-3, 1 - 1e-3])
 
 
@@ -47,7 +48,10 @@ def further_models(study: ImpactStudy | StudyFile) -> list[wings.FurtherModel]:
 
 
 def values_of(sampling: Grid | RandomSample, name: str, base: Value) -> tuple[Value, ...]:
-    """Return all values of a parameter that a sample draws none between for."""
+    """Return the values of a parameter; of a sample, where it draws between none of them.
+
+    Of very many steps those at both ends.
+    """
     entry = sampling.parameters.get(name)
     values: tuple[Value, ...] = (sampling.fixed.get(name, base),)
     if isinstance(sampling, Grid) and entry is not None:
@@ -55,7 +59,9 @@ def values_of(sampling: Grid | RandomSample, name: str, base: Value) -> tuple[Va
     elif isinstance(entry, Choice):
         values = tuple(entry.values)
     elif isinstance(entry, Steps):
-        values = tuple(entry.levels.tolist())
+        last = entry.count - 1
+        steps = np.arange(last + 1) if last < _MANY else np.array([0, last])
+        values = tuple(entry.at_steps(steps).tolist())
     return values
 
 

@@ -65,8 +65,8 @@ def _read(entry: Any, units: str, values: list[Any]) -> np.ndarray[Any, Any]:
         return np.array(values)
     numbers = np.array([si(value, units) for value in values])
     if isinstance(entry, Steps):
-        places = np.abs(entry.levels[:, np.newaxis] - numbers).argmin(axis=0)
-        levels = entry.levels[places]
+        steps = np.clip(entry.steps_to(numbers), 0, entry.count - 1)
+        levels = entry.at_steps(steps)
         if not np.allclose(levels, numbers, rtol=1e-9, atol=1e-9 * entry.step):
             ends = f"{engineering(entry.low, units)} to {engineering(entry.high, units)}"
             raise ValueError(f"is not drawn: steps of {engineering(entry.step, units)} from {ends}")

@@ -179,11 +179,14 @@ def predicted_pair(seed, rest, pairs=20, points=20):
     """Return models of three inputs, points among the pairs, and what the fast and slow tell."""
     rng = np.random.default_rng([9, seed])
     inputs = rng.normal(size=(pairs, 3))
-    places = rng.normal(size=(200, 3))
-    within = (places > inputs.min(axis=0)) & (places < inputs.max(axis=0))
-    places = places[within.all(axis=1)][:points]
+    weights = [1.0, 0.6, 0.3]
+    columns, places = (
+        np.column_stack([x, x @ weights]) for x in (inputs, rng.normal(size=(200, 3)))
+    )
+    within = (places > columns.min(axis=0)) & (places < columns.max(axis=0))
+    places = places[within.all(axis=1), :3][:points]
     every = np.concatenate([inputs, places])
-    low = every @ [1.0, 0.6, 0.3]
+    low = every @ weights
     high = 2 * low + rest(every, rng)
     low_runs = np.append(low[:pairs], rng.normal(size=pairs))
     models = il.Multifidelity(low=low_runs, high=high[:pairs], inputs=inputs)
@@ -218,12 +221,15 @@ def test_what_cannot_be_predicted_is_refused():
     inputs, low = rng.uniform(size=(40, 2)), rng.normal(size=100)
     pair = {"low": low, "high": low[:40] + inputs[:, 0]}
     models = il.Multifidelity(**pair, inputs=inputs)
-    answer = models.prediction([[0.5, 1.2], [0.5, 0.5], [-0.1, 0.5]], low=[0.0, 0.1, 0.0])
-    assert np.isnan([answer.value, answer.low, answer.high]).tolist() == [[True, False, True]] * 3
+    points = [[0.5, 1.2], [0.5, 0.5], [-0.1, 0.5], [0.5, 0.5]]
+    answer = models.prediction(points, low=[0.0, 0.1, 0.0, 9.0])
+    missing = [True, False, True, True]
+    assert np.isnan([answer.value, answer.low, answer.high]).tolist() == [missing] * 3
     assert answer.refusal == [
-        "parameter 2 is beyond the pairs'",
+        "parameter 2 is beyond those of the pairs",
         "",
-        "parameter 1 is beyond the pairs'",
+        "parameter 1 is beyond those of the pairs",
+        "the fast output is beyond those of the pairs",
     ]
     for changes, points, message in (
         ({"inputs": inputs, "confidence": 0.98}, [[0.5, 0.5]], "98 % interval needs 49 pairs"),

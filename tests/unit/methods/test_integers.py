@@ -47,6 +47,15 @@ def test_steps_are_drawn_equally_often_and_to_the_ends():
     assert steps.quantile([0.0, 1.0]).tolist() == [0.1, 0.7]
 
 
+def test_very_many_numbers_take_no_memory(tmp_path):
+    attributes = {"distribution": "integers", "low": 0, "high": 10**15, "step": 1}
+    assert distribution_of(attributes).quantile([0.25, 1.0]).tolist() == [10**15 // 4, 10**15]
+    parameters = {"n": il.Integers(0, 10**15), "x": il.Uniform(0, 1)}
+    sampling = il.Sobol(base_samples=8, parameters=parameters)
+    study = il.Study(title="Many", function=lambda n, x: n * x, sampling=sampling, results=tmp_path)
+    assert study.design()["n"].dtype.kind == "i"
+
+
 def test_a_sample_draws_each_number_equally_often(study):
     numbers, counts = np.unique(study.design()["n"].values, return_counts=True)
     assert numbers.dtype.kind == "i"
