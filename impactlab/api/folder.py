@@ -1,4 +1,4 @@
-"""Methods for the steps of a study in its results folder: the functions behind the commands."""
+"""The functions behind the commands, as methods: steps of studies in their folders."""
 
 from __future__ import annotations
 

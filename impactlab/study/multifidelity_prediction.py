@@ -131,7 +131,7 @@ def interval_text(values: list[float], units: str) -> str:
 
 
 def predicted_at(result: xr.Dataset, point: int) -> list[str]:
-    """Return the stated parameters with their values at a point, in words."""
+    """Return the stated parameters and their values there, in words."""
     texts = []
     for name in result["prediction"].attrs["stated"].split():
         column = result[name]

@@ -48,7 +48,7 @@ def further_models(study: ImpactStudy | StudyFile) -> list[wings.FurtherModel]:
 
 
 def values_of(sampling: Grid | RandomSample, name: str, base: Value) -> tuple[Value, ...]:
-    """Return the values of a parameter; of a sample, where it draws between none of them.
+    """Return all values that sampling lists or steps through, or else the base's.
 
     Of very many steps those at both ends.
     """

@@ -133,7 +133,7 @@ def text_of(content: Mapping[str, Any]) -> str:
 
 
 MOST = 50_000
-"""Most keys and values that a study file may hold, aliases expanded."""
+"""Most keys and values of study files, aliases expanded."""
 _DEEPEST = 20
 _DIGITS = 1000
 """Largest number of characters of a number; Python prints numbers of up to 4300 digits."""
