@@ -14,6 +14,9 @@ paper's beam finer elements change it by 0.2 %. In statics M = F L/4, and gamma 
 the compliance; in an impact the moment is some tenth of that, which is why a constant from
 statics takes back too much.
 
+The indentation is the approach of sphere and axis. By the same statics the axis beneath the force
+lies a part of F and one of M below Timoshenko's deflection: `AXIS_FORCE`, `AXIS_MOMENT`.
+
 Left out: what the section does in waves across the width or shorter than it, and c_s for other
 circles than R/16 (from R/33 to R/8, 6 % of it).
 
@@ -81,9 +84,12 @@ AXIS_FORCE = np.array(
         [0.4255, 0.7031, 0.9179],
         [0.1307, 0.2189, 0.273],
         [-0.0535, -0.0347, -0.0324],
+        [-0.2373, -0.2679, -0.3012],
+        [-0.4589, -0.5325, -0.602],
+        [-0.7315, -0.8375, -0.9307],
     ]
 )
-"""FORCE for the beam's axis instead of its surface, for the first five depths."""
+"""FORCE for the beam's axis instead of its surface."""
 AXIS_MOMENT = np.array(
     [
         [-0.0064, -0.6773, -1.356],
@@ -91,6 +97,9 @@ AXIS_MOMENT = np.array(
         [-0.0004, -0.1376, -0.2636],
         [-0.0004, -0.0655, -0.1217],
         [-0.0002, -0.041, -0.0747],
+        [-0.0002, -0.0285, -0.0514],
+        [-0.0002, -0.0223, -0.0401],
+        [-0.0002, -0.0203, -0.0363],
     ]
 )
 """MOMENT for the axis."""
@@ -249,14 +258,15 @@ def crowding(impact: Impact) -> Floats:
 
 
 def axis_compliance(impact: Impact) -> tuple[Floats, Floats]:
-    """Return the distance of a strip's axis below mid-section, of one impact or of many.
+    """Return the distance of the beam's axis below mid-section, of one impact or of many.
 
-    Per force (m/N) and per M/(EI) (m2), without the bending across the width; zero for other beams,
-    whose indentation is the approach of the sphere and the mean of the section.
+    Per force (m/N) and per M/(EI) (m2), without a strip's bending across the width; zero for
+    half-spaces, whose indentation is the approach of the sphere and the mean of the section.
     """
+    applies = np.not_equal(impact.contact_compliance, "half_space")
     strip = np.equal(impact.contact_compliance, "strip")
     pairs = zip(_of_beam(impact, AXIS_FORCE, AXIS_MOMENT), _across_width(impact), strict=True)
-    c, gamma = (np.where(strip, value - part, 0.0) for value, part in pairs)
+    c, gamma = (np.where(applies, value - strip * part, 0.0) for value, part in pairs)
     return c, gamma
 
 

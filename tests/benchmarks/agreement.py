@@ -68,7 +68,7 @@ MODELS = {
 MESHES, FINE = (5.0, 5.25, 5.5, 5.75), (11.0, 11.5, 12.0)
 """Elements over the radius of the contact; fine from 5 m/s on where metal yields: it flows farthest
 there, and the runs are the shortest."""
-LATER = {5.0: (4.0, 5.0), 10.0: (5.0, 6.0), 20.0: (5.0, 6.0)}
+LATER = dict.fromkeys((5.0, 10.0, 20.0), (6.0, 7.0))
 """Velocities (m/s) and meshes of the runs with several contacts, on the paper's beam."""
 LATER_DURATION = 3e-3
 UNCERTAINTY = "3-D, half the range of the meshes"

@@ -1,6 +1,6 @@
 """The lift of a strip's axis by the contact above it.
 
-A strip's indentation is reckoned from the beam's axis, the depth z below the surface
+Indentations are reckoned from the beam's axis, the depth z below the surface
 (model/contact_compliance.py). There a contact of the radius a differs from a point force on an
 elastic half-space in two ways, both of which leave the axis higher:
 
@@ -14,7 +14,8 @@ E*/S_y = 333 and nu = 0.3: within 0.08 % of delta_m from x = 5 on up to a/z = 0.
 plastic zone reaches the axis, and a/z counts as 0.45 at most. The second is an even pressure, to
 second order in a/z.
 
-Neglected: the beam's lower face, and what the plastic strains do to the bending of the beam.
+Neglected: other beams than strips, the beam's lower face, and what the plastic strains do to the
+bending of the beam.
 """
 
 import math

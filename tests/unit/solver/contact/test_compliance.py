@@ -240,10 +240,10 @@ def test_a_strip_that_yields_keeps_its_energy(load):
 
 @pytest.mark.parametrize("name", [name for name in narrow_beams.BEAMS if " 10 m/s" not in name])
 def test_between_the_sides_of_a_narrow_beam_metal_flows_as_in_3d(name, monkeypatch):
-    """3-D runs, without which the constants would not be these; 1.2 % where nothing is changed."""
+    """3-D runs to which the constants were fitted, and from whose axis they reckon indentations."""
     solid = pd.read_csv(narrow_beams.FILE, index_col="beam").loc[name]
     impact = narrow_beams.impact(*narrow_beams.BEAMS[name])
-    bound = 0.05 if "soft" in name else 0.03
+    bound = 0.06 if "soft" in name else 0.015
 
     def errors():
         run = il.simulate(impact, il.Discretisation(nodes=101), duration="1 ms")
@@ -263,7 +263,8 @@ def test_contact_and_bending_share_the_metal_between_the_sides(name):
     grid = il.Discretisation(nodes=101, courant=0.4)
     run = il.simulate(narrow_beams.impact(*parameters), grid, duration="0.15 ms")
     assert abs(run.contact_force.max().item() / solid.peak_force - 1.0) < 0.02
-    assert abs(run.indentation.max().item() / solid.maximum_indentation - 1.0) < 0.02
+    bound = 0.035 if name.startswith("25 by 35") else 0.015
+    assert abs(run.indentation.max().item() / solid.maximum_indentation - 1.0) < bound
     assert run.energy_error < 1e-3
 
 
