@@ -23,7 +23,11 @@ from impactlab.solver.contact.finite_element import (
     LEAST_STIFFNESS,
 )
 from impactlab.solver.contact.history import Pair, energies, yield_stress
-from impactlab.solver.contact.metals import LARGEST_RATIO, LARGEST_REVERSAL, LEAST_RATIO
+from impactlab.solver.contact.metals import (
+    LARGEST_COMPARED_REVERSAL,
+    LARGEST_RATIO,
+    LEAST_RATIO,
+)
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import is_damped, limit, radius
 from impactlab.solver.event_tracker import largest_load
@@ -146,7 +150,7 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
     if not LEAST_POISSONS_RATIO <= case.beam_poissons_ratio <= LARGEST_POISSONS_RATIO:
         answer.remarks |= POISSONS_RATIO_OUTSIDE_DATA
     hardening = case.beam_isotropic_hardening_modulus + case.beam_kinematic_hardening_modulus
-    reverses = pair.shape[26] * np.sqrt(x) > LARGEST_REVERSAL
+    reverses = pair.shape[26] * np.sqrt(x) > LARGEST_COMPARED_REVERSAL
     if hardening > LARGEST_HARDENING * case.beam_youngs_modulus or reverses:
         answer.remarks |= HARDENING_OUTSIDE_DATA
     if case.sphere_yield_stress < LEAST_HARDNESS * max(case.beam_yield_stress, S_y):
