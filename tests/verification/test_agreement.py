@@ -8,7 +8,9 @@ import pytest
 
 import impactlab as il
 
-pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::impactlab.TooShortWarning", "ignore::impactlab.ImplausibleWarning"
+)
 
 TESTS = Path(__file__).parents[1]
 DOCS = TESTS.parent / "docs"
