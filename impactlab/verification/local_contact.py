@@ -217,8 +217,8 @@ def contact_patch() -> Finding:
     """Compare histories with those of modes under the solver's own force, spread by Hertz.
 
     The paper's beam, elastic, at 10 m/s, during the first contact. "Ahead": how much more the mean
-    deflection under the pressure has moved than mid-span, which the indentation is measured
-    against. The law's own indentation, less the local compliance: Hertz's under that force.
+    deflection under the pressure has moved than mid-span, from which the approach is measured.
+    The approach less the local compliance, the law's own indentation: Hertz's under that force.
     Energy: the solver's own audit.
     """
     comparisons = Comparisons()
@@ -232,9 +232,11 @@ def contact_patch() -> Finding:
         modes = theory(impact.beam, MODES)
         deflection, bent, ahead = _under_pressure(modes, impact, run)
         c, gamma = local(impact) if compliance == "beam" else (0.0, 0.0)
-        law = np.maximum(run.indentation - c * run.contact_force + gamma * bent, 0.0)
+        lower = axis_compliance(impact) if compliance == "beam" else (0.0, 0.0)
+        approach = run.indentation + float(lower[0]) * run.contact_force - float(lower[1]) * bent
+        law = np.maximum(approach - c * run.contact_force + gamma * bent, 0.0)
         hertzian = np.cbrt(run.contact_force.values / hertz.contact_stiffness(impact)) ** 2
-        moved = run.sphere_displacement - run.indentation - run.midspan_deflection
+        moved = run.sphere_displacement - approach - run.midspan_deflection
         where = f"{model}, {compliance}, {scheme}, {nodes} nodes, {VELOCITY:g} m/s"
         kappa = run.midspan_curvature.values
         comparisons.at(where)
