@@ -102,7 +102,7 @@ WARNINGS: dict[str, tuple[int, str]] = {
     "hardening_outside_data": (
         outputs.HARDENING_OUTSIDE_DATA,
         "the beam's hardening modulus is above 0.05 of its Young's modulus, beyond the law's data, "
-        "or kinematic hardening lets the contact yield in reverse",
+        "or kinematic hardening brings the unloading contact close to yielding in reverse",
     ),
     "sphere_yield_outside_data": (
         outputs.SPHERE_YIELD_OUTSIDE_DATA,
