@@ -30,9 +30,14 @@ EXCEPTIONS = {
     ("design 33", "permanent_indentation"): 4.5,
     ("design 41", "peak_force"): 3.0,
     ("design 49", "permanent_indentation"): 3.5,
+    ("design 71", "permanent_indentation"): 5.5,
+    ("design 72", "peak_force"): 3.0,
+    ("design 72", "contact_duration"): 3.0,
+    ("design 72", "maximum_indentation"): 3.0,
 }
 """Misses without a mark, and their limits in %: soft metals, a contact that hardens kinematically,
-and dents in deep beams, which still bend where these 3-D runs end."""
+a dent of a fifth of the indentation, and those in deep beams, which still bend where these 3-D runs
+end."""
 
 
 @pytest.fixture(scope="module")
