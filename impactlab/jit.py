@@ -331,8 +331,13 @@ def _optimize_once() -> None:
 
 
 def _is_whole(library: Any) -> bool:
-    """Return whether a library of numba has machine code, or a loop's order of sums, of its own."""
-    return library.name in _CALLED or library.name in _LOOPS
+    """Return whether a library of numba is optimised by itself.
+
+    It has machine code of its own, or its sums, or those of what it calls, may be reordered: they
+    keep the order that they have where numba optimises every function.
+    """
+    names = {library.name, *(callee.name for callee in library._linking_libraries)}
+    return library.name in _CALLED or not names.isdisjoint(_LOOPS)
 
 
 def _callees(library: Any) -> list[Any]:
