@@ -295,9 +295,9 @@ _LOOPS: set[str] = set()
 
 
 def _optimize_once() -> None:
-    """Optimise what Python calls with all within it, and nothing within it by itself but loops.
+    """Optimise what Python calls with all within it, and within it only loops by themselves.
 
-    numba links, optimises and emits every function with all that it calls, for 40 % of the time;
+    numba links, optimises and emits every function with all that it calls, a fifth of the time;
     the kernel has its own copies.
     """
     library: Any = numba.core.codegen.CPUCodeLibrary
