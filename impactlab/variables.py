@@ -102,7 +102,8 @@ WARNINGS: dict[str, tuple[int, str]] = {
     "hardening_outside_data": (
         outputs.HARDENING_OUTSIDE_DATA,
         "the beam's hardening modulus is above 0.05 of its Young's modulus, beyond the law's data, "
-        "or kinematic hardening brings the unloading contact close to yielding in reverse",
+        "or kinematic hardening brings the unloading contact close to yielding in reverse, or the "
+        "beam hardens under the contact beyond twice the sphere's yield stress",
     ),
     "sphere_yield_outside_data": (
         outputs.SPHERE_YIELD_OUTSIDE_DATA,

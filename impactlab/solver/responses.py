@@ -25,8 +25,10 @@ from impactlab.solver.contact.finite_element import (
 from impactlab.solver.contact.history import Pair, energies, yield_stress
 from impactlab.solver.contact.metals import (
     LARGEST_COMPARED_REVERSAL,
+    LARGEST_HARDENED,
     LARGEST_RATIO,
     LEAST_RATIO,
+    hardened,
 )
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import is_damped, limit, radius
@@ -150,8 +152,10 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
     if not LEAST_POISSONS_RATIO <= case.beam_poissons_ratio <= LARGEST_POISSONS_RATIO:
         answer.remarks |= POISSONS_RATIO_OUTSIDE_DATA
     hardening = case.beam_isotropic_hardening_modulus + case.beam_kinematic_hardening_modulus
-    reverses = pair.shape[26] * np.sqrt(x) > LARGEST_COMPARED_REVERSAL
-    if hardening > LARGEST_HARDENING * case.beam_youngs_modulus or reverses:
+    outside = hardening > LARGEST_HARDENING * case.beam_youngs_modulus
+    outside |= pair.shape[26] * np.sqrt(x) > LARGEST_COMPARED_REVERSAL
+    outside |= hardened(pair.shape[25], x) * S_y > LARGEST_HARDENED * case.sphere_yield_stress
+    if outside:
         answer.remarks |= HARDENING_OUTSIDE_DATA
     if case.sphere_yield_stress < LEAST_HARDNESS * max(case.beam_yield_stress, S_y):
         answer.remarks |= SPHERE_YIELD_OUTSIDE_DATA
