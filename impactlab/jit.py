@@ -11,7 +11,8 @@ damaged file, and looks for code by the path and age of its source. Here a folde
 of sources and kind of machine, wherever the sources lie, it has one file per function and
 signature, with a checksum, and a damaged file empties its folder.
 
-This module alone uses numba's private parts (`_PRIVATE`), for the cache and to compile sooner.
+This module and machine_code.py alone use numba's private parts (`_PRIVATE`), for the cache and to
+compile sooner.
 Where one is missing, or under IMPACTLAB_PLAIN_NUMBA=1, every process compiles its kernels with
 numba's public options, which takes longer and gives the same bits: what is summed in another order
 in a second copy (`summing` in solver/jit.py) is then inlined.
@@ -53,16 +54,16 @@ except ValueError as _error:
 import llvmlite
 from llvmlite import binding
 
+from impactlab import machine_code
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 log = logging.getLogger(__name__)
 
 _COMPILES = "IMPACTLAB_COMPILES"
 """Environment variable of a process that compiles kernels, for others to load: their names."""
-_STAGES = "_optimize_functions", "finalize", "_finalize_final_module"
-"""Methods by which numba makes machine code of a function."""
 _PRIVATE = (
-    *(f"core.codegen.CPUCodeLibrary.{stage}" for stage in _STAGES),
+    *(f"core.codegen.CPUCodeLibrary.{stage}" for stage in machine_code.STAGES),
     "core.codegen.CPUCodeLibrary.has_dynamic_globals",
     "core.codegen.JITCPUCodegen.set_env",
     "core.compiler.CompileResult._rebuild",
@@ -233,7 +234,8 @@ class Compiler:
     def __init__(self, root: Path) -> None:
         """Compile the package in the folder `root`."""
         digest = hashlib.sha256(numba.__version__.encode())
-        for path in (*sorted(root.rglob("*.py")), Path(__file__)):
+        beside = Path(__file__), Path(machine_code.__file__)
+        for path in (*sorted(root.rglob("*.py")), *beside):
             name = path.relative_to(root) if path.is_relative_to(root) else path.name
             digest.update(str(name).encode() + b"\0" + path.read_bytes())
         self.sources_hash = digest.hexdigest()
@@ -263,9 +265,9 @@ class Compiler:
             # kept: what makes the others ready for Python would take half of the time.
             called = name in os.environ.get(_COMPILES, name).split()
             if called:
-                _CALLED.add(function.__qualname__)
+                machine_code.CALLED.add(function.__qualname__)
             if fastmath:
-                _LOOPS.add(function.__qualname__)
+                machine_code.LOOPS.add(function.__qualname__)
             private = {
                 "_nrt": allocates,
                 "no_cfunc_wrapper": True,
@@ -288,74 +290,8 @@ class Compiler:
 
 _MADE: Counter[str] = Counter()
 """How many functions another function has made, by their qualified name."""
-_CALLED: set[str] = set()
-"""Functions that Python can call in this process, by qualified name."""
-_LOOPS: set[str] = set()
-"""Functions whose sums may be reordered: they keep the order that they have by themselves."""
-
-
-def _optimize_once() -> None:
-    """Optimise what Python calls with all within it, and within it only loops by themselves.
-
-    numba links, optimises and emits every function with all that it calls, a fifth of the time;
-    the kernel has its own copies.
-    """
-    library: Any = numba.core.codegen.CPUCodeLibrary
-    machine: Any = numba.core.codegen.JITCPUCodegen
-    tidy, finalize, emit = (getattr(library, name) for name in _STAGES)
-    set_env = machine.set_env
-
-    def tidy_whole(self: Any, module: Any) -> None:
-        if _is_whole(self):
-            tidy(self, module)
-        else:
-            module.data_layout = self._codegen._data_layout
-
-    def finalize_whole(self: Any) -> None:
-        if _is_whole(self):
-            self._linking_libraries = _callees(self)
-            finalize(self)
-        self._finalized = True
-
-    def emit_called(self: Any) -> None:
-        if self.name in _CALLED:
-            emit(self)
-
-    def set_env_of_called(self: Any, name: str, env: Any) -> None:
-        if self._engine.get_global_value_address(name):
-            set_env(self, name, env)
-
-    for name, stage in zip(_STAGES, (tidy_whole, finalize_whole, emit_called), strict=True):
-        setattr(library, name, stage)
-    machine.set_env = set_env_of_called
-
-
-def _is_whole(library: Any) -> bool:
-    """Return whether a library of numba is optimised by itself.
-
-    It has machine code of its own, or its sums, or those of what it calls, may be reordered: they
-    keep the order that they have where numba optimises every function.
-    """
-    names = {library.name, *(callee.name for callee in library._linking_libraries)}
-    return library.name in _CALLED or not names.isdisjoint(_LOOPS)
-
-
-def _callees(library: Any) -> list[Any]:
-    """Return all that a library calls, callers first: LLVM links only what has been called."""
-    callees: dict[Any, None] = {}
-
-    def add(caller: Any) -> None:
-        for callee in caller._linking_libraries:
-            if callee not in callees:
-                add(callee)
-                callees[callee] = None
-
-    add(library)
-    return list(reversed(callees))
-
-
 if _COMPILES in os.environ and not _IS_PLAIN:
-    _optimize_once()
+    machine_code.optimize_once()
 
 
 def _announce(folder: Path) -> None:
