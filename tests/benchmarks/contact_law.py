@@ -41,23 +41,32 @@ SOFT = HERE / "indentation_soft.csv"
 MODULE = Path(metals.__file__)
 FINE = MODULE.with_name("finite_element.csv")
 LARGEST_DEPTH = 0.022
-"""delta/R of the first two designs."""
+"""delta/R."""
 
 
 class Design(NamedTuple):
-    """A Sobol design: its first run, number of cases, seed; elements and steps of a solve."""
+    """A Sobol design of runs.
+
+    first: number of the first run; elements, steps: of each solve; ratios: least E*/S_y, and the
+    largest over it; exponent: the larger, the less hardening; kinematic: the least share of it;
+    depths: the largest over LARGEST_DEPTH, and the least over it, None for 6 delta_y.
+    """
 
     first: int
     cases: int
     seed: int
     elements: int
     steps: int
+    ratios: tuple[float, float]
+    exponent: float
+    kinematic: float
+    depths: tuple[float, float | None]
 
 
 DESIGNS = {
-    "all": Design(0, 160, 7, 20, 60),
-    "deep": Design(160, 28, 5, 20, 60),
-    "soft": Design(204, 24, 9, 40, 160),
+    "all": Design(0, 160, 7, 20, 60, (60, 25), 2.0, 0.0, (1.0, None)),
+    "deep": Design(160, 28, 5, 20, 60, (200, 7.5), 1.5, 0.4, (1.0, 0.4)),
+    "soft": Design(204, 24, 9, 40, 160, (600, 2.5), 1.5, 0.0, (0.5, 0.1)),
 }
 BIAS, FINER_BIAS = 0.004, 0.001
 """Share by which the force is too small, and by which that of the runs of soft metals is."""
@@ -72,21 +81,15 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 METALS = ["E_over_S", "share", "nu", "isotropic", "kinematic", "sphere_yield"]
 
 
-def cases(name: str) -> Iterator[dict[str, float]]:
+def cases(design: Design) -> Iterator[dict[str, float]]:
     """Yield the options of sphere_indentation.py of each case of a design."""
-    design = DESIGNS[name]
-    smallest, ratio = {"all": (60, 25), "deep": (200, 7.5), "soft": (600, 2.5)}[name]
-    points = qmc.Sobol(7, seed=design.seed).random(256 if name == "all" else 32)
-    for i, u in enumerate(points[: design.cases]):
-        modulus = smallest * ratio ** u[2]
-        hardening = 0.05 * u[3] ** (2.0 if name == "all" else 1.5) * (i % 4 > 0)
-        kinematic = 0.4 + 0.6 * u[5] if name == "deep" else u[5]
-        deepest = LARGEST_DEPTH / (0.825 * math.pi / modulus) ** 2
-        depth = {
-            "all": 6 * (deepest / 6) ** u[6],
-            "deep": deepest * 0.4 ** u[6],
-            "soft": 0.5 * deepest * 0.1 ** u[6],
-        }[name]
+    size = 1 << (design.cases - 1).bit_length()
+    for i, u in enumerate(qmc.Sobol(7, seed=design.seed).random(size)[: design.cases]):
+        modulus = design.ratios[0] * design.ratios[1] ** u[2]
+        hardening = 0.05 * u[3] ** design.exponent * (i % 4 > 0)
+        kinematic = design.kinematic + (1 - design.kinematic) * u[5]
+        deepest = design.depths[0] * LARGEST_DEPTH / (0.825 * math.pi / modulus) ** 2
+        least = design.depths[1] or 6 / deepest
         yield {
             "modulus": modulus,
             "share": 0.25 + 0.66 * u[0],
@@ -94,22 +97,23 @@ def cases(name: str) -> Iterator[dict[str, float]]:
             "isotropic": hardening * (1 - kinematic),
             "kinematic": hardening * kinematic,
             "sphere-yield": 1 / u[4] if u[4] > 0.4 else math.inf,
-            "depth": depth,
+            "depth": deepest * least ** (u[6] if design.depths[1] else 1 - u[6]),
             "elements": design.elements,
             "steps": design.steps,
         }
 
 
-def solve(design: str, part: int, parts: int) -> None:
+def solve(name: str, part: int, parts: int) -> None:
     """Solve every `parts`-th case of a design and append its rows to the data."""
+    design = DESIGNS[name]
     for number, options in enumerate(cases(design)):
         if number % parts != part:
             continue
         depth = options["depth"]
-        run = DESIGNS[design].first + number
-        data = SOFT if design == "soft" else DATA
+        run = design.first + number
+        data = SOFT if name == "soft" else DATA
         output = data.with_suffix(f".{run}.csv")
-        words = [f"--{name}={value:.5g}" for name, value in options.items()]
+        words = [f"--{option}={value:.5g}" for option, value in options.items()]
         words += ["--unload", f"{max(depth / 5, 2):.5g}", f"{depth:.5g}"]
         script = str(HERE / "sphere_indentation.py")
         subprocess.run([sys.executable, script, str(output), *words], check=True)
