@@ -12,8 +12,7 @@ One impact
     Discretisation    nodes, points and scheme in time
     simulate          solve it: an xarray.Dataset
     simulate_many     solve lists of parameters, in pairs or all combinations
-    ImplausibleWarning, TooShortWarning
-                      of values, and of a duration that leaves responses missing
+    ImplausibleWarning, TooShortWarning  of values; of too short a duration
 
 A study
     Study           sample, solve, resume, analyse and report many impacts
