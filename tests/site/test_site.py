@@ -245,7 +245,7 @@ def test_code_blocks_run(path, folder):
         r"`(impactlab (?:simulate|go|recommend) [^`\n]*(?:--velocity|depth.yaml)[^`\n]*)`"
     )
     commands = COMMAND.findall(whole) + quick.findall(whole)
-    for words in (each for each in commands if not LEFT_OUT.search(each)):
+    for words in (command for command in commands if not LEFT_OUT.search(command)):
         with warnings.catch_warnings(action="default"):  # as on the command line
             done = called(*shlex.split(words)[1:], cwd=folder)
         assert done.returncode == 0, f"{words}: {done.stderr}"
@@ -265,8 +265,8 @@ il.Study(
     book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(code)])
     nbclient.NotebookClient(book, timeout=240, kernel_name="python3").execute()
     outputs = book.cells[0].outputs
-    assert {each.output_type for each in outputs} == {"stream"}
-    drawn = "".join(each.text for each in outputs if each.name == "stdout")
+    assert {output.output_type for output in outputs} == {"stream"}
+    drawn = "".join(output.text for output in outputs if output.name == "stdout")
     assert drawn.count("\n") == 1, "the bar takes several lines"
     last = re.sub(r"\x1b\[[0-9;?]*\w", "", drawn.rstrip().rpartition("\r")[2])
     assert re.search(r"^runs\b.* 3/3 .* 0 failed", last), last

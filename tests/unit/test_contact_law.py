@@ -4,7 +4,6 @@ import pickle
 import subprocess
 import sys
 from dataclasses import replace
-from pathlib import Path
 from textwrap import dedent
 
 import numpy as np
@@ -68,14 +67,12 @@ def answers(contact):
 
 @pytest.mark.slow
 def test_answers_are_those_of_the_built_in_law_and_of_the_present_source(capsys):
-    viscous = il.register(own(name="viscous", damping=damping))
-    assert answers(viscous) == pytest.approx(answers("hunt_crossley"), rel=1e-9)
-    law = il.register(own(strong(1.0)))
-    assert answers(law) == pytest.approx(answers("hertz"), rel=1e-9)
+    law = il.register(own(strong(1.0), damping=damping))
+    assert answers(law) == pytest.approx(answers("hunt_crossley"), rel=1e-9)
     # a law of the same name and code, with another constant, in the same session
-    softer = il.register(own(strong(0.5), hertzian_start=False))
+    softer = il.register(own(strong(0.5), damping=damping, hertzian_start=False))
     assert softer.number != law.number
-    assert answers(softer)[0] < 0.95 * answers("hertz")[0]
+    assert answers(softer)[0] < 0.95 * answers("hunt_crossley")[0]
     with pytest.raises(ValueError, match="is not registered"):
         il.paper_impact(1.0, law)
 
@@ -242,19 +239,3 @@ print(il.paper_impact(1.0, "bouncy").contact, CONTACT_LAWS["bouncy"].provenance)
 """
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert done.stdout.strip() == "bouncy bouncy 1.2, entry point bouncy:law", done.stderr
-
-
-def run_how_to(title):
-    """Return the names that the first code of a how-to leaves."""
-    text = (Path(__file__).parents[2] / "docs" / "howto.md").read_text(encoding="utf-8")
-    _, _, after = text.partition(f"## {title}\n")
-    names = {"il": il}
-    exec(after.partition("```python")[2].partition("```")[0], names)
-    return names
-
-
-@pytest.mark.slow
-def test_the_how_to_runs():
-    names = run_how_to("A contact law of your own")
-    assert 0.0 < names["run"].restitution.item() < 1.0
-    assert names["law"].source_hash in names["run"].contact.attrs["origin"]

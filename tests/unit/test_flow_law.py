@@ -18,7 +18,6 @@ from impactlab.solve import fibre_section
 from impactlab.solver import FLOW_LAWS, FLOW_LAWS_OUTSIDE, flow_stress, section
 from impactlab.solver.strain_rate import RateLaw
 from impactlab.study.solvers import kernels
-from tests.unit.test_contact_law import run_how_to
 
 D, Q, H = 40.0, 5.0, 2e9
 STEEL = il.paper_impact().beam.material
@@ -129,14 +128,6 @@ def test_an_impact_is_that_of_the_built_in_law(model, scheme):
     for name in ("maximum_deflection", "equivalent_plastic_strain", "midspan_deflection"):
         np.testing.assert_allclose(*(run[name].values for run in runs), rtol=1e-8, atol=1e-15)
     assert runs[0].beam_flow_law.attrs["origin"].endswith(law.source_hash)
-
-
-@pytest.mark.long
-def test_the_how_to_runs():
-    run = run_how_to("A flow law of your own")["run"]
-    assert run.energy_error < 2e-3
-    assert 0.0 < run.peak_plastic_strain < 0.05
-    assert run.plastic_dissipation > 1.0
 
 
 def test_registration_refuses_what_no_metal_does(capsys):
