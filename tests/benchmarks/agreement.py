@@ -105,12 +105,12 @@ def mean_solid(
     mean = runs[0].assign(contact_force=("time", histories.mean(axis=0)))
     spread = {}
     for name in filter(mean.__contains__, RESPONSES):
-        found = np.array([float(run[name]) for run in runs])
-        mean[name] = mean.contact_force.max() if name == "peak_force" else found.mean()
+        answers = np.array([float(run[name]) for run in runs])
+        mean[name] = mean.contact_force.max() if name == "peak_force" else answers.mean()
         if name != "permanent_indentation" or impact.beam.material.yield_stress < ELASTIC:
-            spread[name] = 50.0 * np.ptp(found) / float(mean[name])
+            spread[name] = 50.0 * np.ptp(answers) / float(mean[name])
     expected = np.linalg.norm(mean.contact_force)
-    apart = [np.linalg.norm(each - mean.contact_force) / expected for each in histories]
+    apart = [np.linalg.norm(force - mean.contact_force) / expected for force in histories]
     spread["force_history"] = 100.0 * float(max(apart))
     return mean, spread
 
@@ -181,10 +181,9 @@ def drawn(table: pd.DataFrame) -> Figure:
     for ax, (response, title) in zip(axes, RESPONSES.items(), strict=True):
         limit = 5.0 if response == "force_history" else 2.0
         ax.axhspan(-limit if response != "force_history" else 0.0, limit, color="0.9", lw=0)
-        for at, model in enumerate(SHOWN):
+        for model, colour, line in zip(SHOWN, style.COLOURS, style.LINES, strict=False):
             rows = table[(table.model == model) & (table.bodies == "paper")]
-            colour = style.COLOURS[at]
-            ax.plot(rows.velocity, rows[response], color=colour, ls=style.LINES[at], label=model)
+            ax.plot(rows.velocity, rows[response], color=colour, ls=line, label=model)
             for bodies, marker in zip(list(BODIES)[1:3], "sv", strict=True):
                 others = table[(table.model == model) & (table.bodies == bodies)]
                 ax.plot(others.velocity, others[response], marker, ms=4, mfc="none", color=colour)
@@ -206,11 +205,11 @@ def main(meshes: Sequence[float]) -> None:
         witness, spread = mean_solid(impact, duration, meshes or (FINE if fine else MESHES))
         rows.append({"bodies": bodies, "velocity": velocity, "model": UNCERTAINTY} | spread)
         for model, options in MODELS.items():
-            found = differences(replace(impact, **options), witness)
-            rows.append({"bodies": bodies, "velocity": velocity, "model": model} | found)
+            errors = differences(replace(impact, **options), witness)
+            rows.append({"bodies": bodies, "velocity": velocity, "model": model} | errors)
         for law in LAWS if impact.beam.material.yield_stress < ELASTIC else ():
-            found = differences(replace(impact, **CORRECTED | {"contact": law}), witness)
-            by_law.append({"law": law} | found)
+            errors = differences(replace(impact, **CORRECTED | {"contact": law}), witness)
+            by_law.append({"law": law} | errors)
     table = pd.DataFrame(rows)
     table.round(2).to_csv(ROOT / "docs" / "agreement.csv", index=False)
     largest = pd.DataFrame(by_law).set_index("law").abs().groupby("law", sort=False).max()
@@ -221,4 +220,4 @@ def main(meshes: Sequence[float]) -> None:
 
 
 if __name__ == "__main__":
-    main([float(each) for each in sys.argv[1:]])
+    main([float(elements) for elements in sys.argv[1:]])

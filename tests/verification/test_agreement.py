@@ -25,19 +25,14 @@ TARGET = {
 }
 """Largest difference from 3-D in %."""
 EXCEPTIONS = {
-    ("design 1", "peak_force"): 3.0,
-    ("design 2", "contact_duration"): 3.0,
+    ("design 1", "peak_force"): 2.5,
+    ("design 2", "contact_duration"): 2.5,
     ("design 33", "permanent_indentation"): 4.5,
-    ("design 41", "peak_force"): 3.0,
-    ("design 49", "permanent_indentation"): 3.5,
-    ("design 71", "permanent_indentation"): 5.5,
-    ("design 72", "peak_force"): 3.0,
+    ("design 36", "contact_duration"): 2.5,
     ("design 72", "contact_duration"): 3.0,
-    ("design 72", "maximum_indentation"): 3.0,
 }
-"""Misses without a mark, and their limits in %: soft metals, a contact that hardens kinematically,
-a dent of a fifth of the indentation, and those in deep beams, which still bend where these 3-D runs
-end."""
+"""Misses without a mark, and their limits in %: soft metals (1, 72), a contact that hardens
+kinematically, a dent in a deep beam, which still bends where its 3-D run ends, and a flat beam."""
 
 
 @pytest.fixture(scope="module")

@@ -9,9 +9,9 @@ delta_y and F_y (th = 1.1), w = 1 - 1/sqrt(x), log = ln x, Q = q sqrt(x) w/(1 + 
     loading    F = F_y x^1.5 exp(w^2 (g_0 + g_1 w + g_2 w^2 + g_3 w^3 + g_4 log) + g_5 w sqrt(x)
                    + Q (h_0 + h_1 w + h_2 log))
     unloading  F = F_m ((delta - delta_r)/(delta_m - delta_r))^n,
-               delta_m - delta_r = (1 + 0.027 w) delta_y sqrt(F_m/F_y) (1 + r_0 w + w^2 (...)
+               delta_m - delta_r = (1 + 0.03 w) delta_y sqrt(F_m/F_y) (1 + r_0 w + w^2 (...)
                    + Q (...)),
-               n = 1.5 + 0.059 w + n_0 w + w^2 (...) + Q (...)
+               n = 1.5 + 0.066 w + n_0 w + w^2 (...) + Q (...)
 The coefficients and q follow from the metals (metals.py). tests/benchmarks/contact_law.py fits them
 and prints how well.
 
@@ -51,15 +51,20 @@ LARGEST_DEPTH = 0.0194
 """delta/R up to which the law was compared with 3-D. The data end at 0.045; on two like metals the
 fit's continuation is 1.8 % too large at 0.029, and a beam gives way more."""
 
-TAIL, TAIL_EXPONENT = 0.027, 0.059
+TAIL, TAIL_EXPONENT = 0.03, 0.066
 """Of what unloading recovers, over w: how much further it goes than the power fitted to forces
-above 2 % of the peak; and how much the exponent grows, so that the force stays the same in the
-mean. The slope of the force between 2 and 10 % of its peak ends between 0.02 and 0.03 further, at
-the largest, in all metals of the data that do not yield in reverse."""
+above 2 % of the peak, and how much the exponent grows, so that the force stays the same in the
+mean. The data have 0.034 in the mean (standard deviation 0.008); on the paper's beam at 0.5 m/s a
+dent of 3-D is 2 % deeper even with 0.03."""
 
 LEAST_HARDNESS = 1.0
 """Yield stress of the sphere over that of the flat; a softer sphere is in the data, but was not
 compared with 3-D."""
+LEAST_ROUND_HARDNESS, LARGEST_ROUND_DEPTH, LARGEST_ROUND_YIELD = 1.15, 0.004, 100.0
+"""The same beyond that delta/R and delta/delta_y. The sphere of the data is a half-space with a
+sphere's profile. One that is round, and as soft as the flat, takes less force where both flow
+freely: 1.8 % at 0.008 R and 130 delta_y (0.9 % if four times as stiff), 5 to 7 % at 0.008 to 0.011
+R of a metal of E*/S_y = 800; 0.1 % less there if it has 1.25 times the flat's yield stress."""
 LEAST_STIFFNESS, LARGEST_STIFFNESS = 0.33, 10.0
 """Young's modulus of the sphere over that of the flat, of equal Poisson's ratios."""
 LARGEST_CIRCLE, LARGEST_CIRCLE_ACROSS = 0.6, 0.3

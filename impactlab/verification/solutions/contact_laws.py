@@ -21,27 +21,27 @@ from impactlab.verification.solutions import hertz as hertz_forms
 LARGEST_DEPTH = 0.0194
 """d/R beyond which the force of `finite_element` is linear."""
 TERMS = (
-    (0.028489, 0.11461, -0.068269),
-    (0.13012, 0.059459, 0.12445),
-    (0.33334, 0.00065729, 0.034316),
-    (0.49175, -0.097335, -0.21846),
-    (-0.34482, -0.0083723, 0.015356),
-    (0.29855, 0.97648, -0.19714),
-    (-0.73311, -1.8377, 0.56929),
-    (0.034603, 0.89639, -0.47427),
-    (0.093839, -0.011627, 0.013823),
-    (-0.19489, 0.2878, -0.26966),
-    (-0.29993, -0.71714, 0.68643),
-    (-0.10357, 0.62073, -0.20364),
-    (0.10576, -0.036611, -0.039822),
+    (0.05556, 0.13026, -0.080001),
+    (0.11381, -0.010456, 0.22569),
+    (0.27176, 0.11394, -0.16491),
+    (0.61141, -0.11089, -0.017396),
+    (-0.35812, -0.015792, 0.0020467),
+    (0.32381, 1.0646, -0.14606),
+    (-0.81469, -2.1175, 0.40182),
+    (0.11429, 1.0747, -0.28426),
+    (0.089795, -0.0060488, 0.0011315),
+    (-0.20039, 0.29444, -0.23039),
+    (-0.28195, -0.6542, 0.60932),
+    (-0.098715, 0.45742, -0.13789),
+    (0.10155, -0.019559, -0.045642),
 )
 """Of the fit to finite elements for bodies of one modulus: constant, linear and quadratic in
 4 (nu - 0.3). Force: of w^2 to w^5 and w^2 ln x; of what is recovered, and of the exponent: of w^2
 to w^4 and w^2 ln x; w = 1 - 1/sqrt(x)."""
 STRAINS = (
-    (-0.0056079, -0.003135, -0.0018332),
-    (-0.0034822, -7.7525e-05, 0.0093092),
-    (-0.0034783, 0.013218, 0.0091847),
+    (-0.0045101, -0.0033486, -0.0018223),
+    (-0.0032266, -0.0001836, 0.0073037),
+    (-0.003491, 0.01461, 0.0066853),
 )
 """Of w sqrt(x) (force), w^2 sqrt(x): constant, times 100 S/E, and that times 4 (nu - 0.3)."""
 
@@ -188,8 +188,8 @@ def finite_unloading(d: float, F: float, E: float, R: float, S: float, nu: float
         math.fsum(map(math.prod, zip(terms[i : i + 4], powers, strict=True))) for i in (5, 9)
     )
     share = 1.0 + 0.33 * w + shares + strain[1] * w**2 * root
-    n = 1.5 - 0.081 * w + exponents + strain[2] * w**2 * root
-    share *= 1.0 + 0.027 * w
+    n = 1.5 - 0.074 * w + exponents + strain[2] * w**2 * root
+    share *= 1.0 + 0.03 * w
     return F, d - share * d_y * math.sqrt(F / hertz(d_y, E, R, S, nu)), n
 
 
