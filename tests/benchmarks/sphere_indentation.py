@@ -9,7 +9,8 @@ unless --small, an updated Lagrangian formulation with the rotation of Hughes an
 strains of a step on the geometry at its middle, equilibrium on that at its end. The sphere touches
 the nodes of the surface from above, by an active set. It is a half-space with the profile of a
 sphere: an elastic one with the compliance of the same mesh, in the share that --share leaves it (1
-for a rigid sphere); with --sphere-yield one that yields, on a second mesh like the first. Steps
+for a rigid sphere); with --sphere-yield one that yields, on a second mesh like the first, or, with
+--round, on one that is a sphere's cap up to half the radius from the axis. Steps
 are even in the radius of contact, and have to be short, since plastic flow depends on its path:
 from 2 to 200 delta_y, on 15 elements, 40 steps in equal ratios give 1 to 4 % less force than 400
 even ones, 200 even ones 0.1 % less.
@@ -220,17 +221,19 @@ class Mesh:
 
 
 class Body:
-    """A half-space on the mesh, with its state; metal: see `assemble`."""
+    """A half-space on the mesh, with a sphere's cap if it is round; metal: see `assemble`."""
 
-    def __init__(self, mesh: Mesh, metal: Array, large: bool) -> None:
-        self.mesh, self.metal, self.large = mesh, metal, large
+    def __init__(self, mesh: Mesh, metal: Array, large: bool, is_round: bool = False) -> None:
+        self.mesh, self.metal, self.large, self.X = mesh, metal, large, mesh.X.copy()
+        if is_round:
+            self.X[:, 1] -= 1.0 - np.sqrt(1.0 - np.minimum(mesh.X[:, 0], 0.5) ** 2)
         self.u, self.state = np.zeros_like(mesh.X), np.zeros((len(mesh.elements), 4, 9))
         self.rate = np.zeros_like(mesh.X)
 
     def assembled(self, du: Array) -> tuple[Array, Array, Array]:
         """Return internal forces, element stiffnesses and new states after the step `du`."""
-        mesh = self.mesh
-        return assemble(mesh.X, mesh.elements, self.u, du, self.state, self.metal, self.large)
+        elements = self.mesh.elements
+        return assemble(self.X, elements, self.u, du, self.state, self.metal, self.large)
 
 
 class Solve:
@@ -238,7 +241,8 @@ class Solve:
 
     modulus: E*/S_y of the flat; x_max: the largest delta/delta_y to come; number: of elements over
     the largest radius; share: of the flat in the compliance 1/E*; hardening: of the flat, isotropic
-    and kinematic moduli over Young's modulus; sphere_yield: stress over the flat's.
+    and kinematic moduli over Young's modulus; sphere_yield: stress over the flat's; is_round:
+    whether the sphere's mesh, if it yields, has the shape of a sphere.
     """
 
     def __init__(
@@ -252,6 +256,7 @@ class Solve:
         hardening: tuple[float, float] = (0.0, 0.0),
         sphere_yield: float = math.inf,
         large: bool = True,
+        is_round: bool = False,
     ) -> None:
         self.delta_y, self.large = (0.825 * math.pi / modulus) ** 2, large
         self.F_y = 4.0 / 3.0 * modulus * self.delta_y**1.5
@@ -271,7 +276,7 @@ class Solve:
             self.compliance *= 0.0
             E = (1.0 - NU**2) * modulus / (1.0 - share)
             sphere = np.array([E, NU, sphere_yield, 0.0, 0.0])
-            self.bodies.append(Body(self.mesh, sphere, large))
+            self.bodies.append(Body(self.mesh, sphere, large, is_round))
         self.force, self.delta, self.radius, self.last = np.zeros(nodes.size), 0.0, 0.0, 0.0
 
     def move(self, delta: float, halvings: int = 0) -> tuple[float, float]:
@@ -400,6 +405,7 @@ def run(args: argparse.Namespace) -> None:
         hardening=hardening,
         sphere_yield=args.sphere_yield,
         large=not args.small,
+        is_round=args.round,
     )
     solve.bodies[0].state[:, :, [0, 2]] = args.stress
     metals = args.modulus, args.share, args.nu, *hardening, args.sphere_yield
@@ -452,6 +458,7 @@ if __name__ == "__main__":
     )
     parser.add_argument("--kinematic", type=float, default=0.0, help="the same")
     parser.add_argument("--sphere-yield", type=float, default=math.inf, help="over the flat's")
+    parser.add_argument("--round", action="store_true", help="a sphere that yields is round")
     parser.add_argument("--depth", type=float, required=True, help="largest delta/delta_y")
     parser.add_argument("--unload", type=float, nargs="*", help="unload from these, too")
     parser.add_argument("--elements", type=int, default=60, help="over the largest radius")
