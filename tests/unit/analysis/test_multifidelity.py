@@ -39,6 +39,7 @@ def test_the_mean_is_unbiased_covered_and_as_accurate_as_theory_says(correlation
     assert ratio == pytest.approx(1 - correlation**2 * (1 - RUNS / LOW_RUNS), rel=0.3)
 
 
+@pytest.mark.slow
 def test_the_variance_is_unbiased_covered_and_as_accurate_as_it_says():
     pairs = [ishigami_pair(seed, 0.97) for seed in range(REPETITIONS)]
     variances = [il.Multifidelity(**pair).variance() for pair in pairs]
@@ -82,6 +83,7 @@ def test_quantiles_are_covered_and_as_accurate_as_they_say():
     assert plain / values.var() == pytest.approx(saving, rel=0.5)
 
 
+@pytest.mark.slow
 def test_outer_quantiles_are_covered_and_save_runs_where_the_models_agree():
     ends = (0.05, 0.95)
     pairs = [ishigami_pair(seed, 0.97, runs=100, low_runs=800) for seed in range(60)]
@@ -193,6 +195,7 @@ def predicted_pair(seed, rest, pairs=20, points=20):
     return models.prediction(places, low[pairs:]), high[pairs:]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("rest", "width"),
     [

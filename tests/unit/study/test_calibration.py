@@ -49,6 +49,7 @@ def study(tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_known_parameters_are_recovered_and_confirmed_by_runs(
     study, monkeypatch, tmp_path, blank_pictures
 ):
@@ -140,6 +141,7 @@ def test_two_roots_are_told_as_two_ranges(tmp_path, blank_pictures, low, high, c
     assert "the data cannot tell" not in labels
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", [il.Fast, il.Sobol])
 def test_a_single_parameter_is_sampled_reported_and_calibrated(tmp_path, method):
     size = {"base_samples": 64} if method is il.Sobol else {"samples": 612}

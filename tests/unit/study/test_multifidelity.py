@@ -205,6 +205,7 @@ def test_a_statistic_that_is_not_sound_is_refused_with_its_reason(tmp_path):
     assert "Caution: the models hardly correlate" in result.answer
 
 
+@pytest.mark.slow
 def test_three_dimensional_runs_are_those_at_the_first_draws(tmp_path):
     parameters = {"velocity": il.Uniform("1 m/s", "2 m/s")}
     short = impacts(
@@ -293,6 +294,7 @@ def mixed(folder, **changes):
     return study(folder, with_words, sampling=sampling, **changes)
 
 
+@pytest.mark.slow
 def test_answers_of_the_slow_model_are_predicted_where_pairs_are(tmp_path):
     """Words and whole numbers among the parameters, the noise at its median."""
     points = {"x": [0.5, 2, 0.9], "law": "b", "count": [2, 3, 3]}

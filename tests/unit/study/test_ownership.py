@@ -64,6 +64,7 @@ def other_file():
     return "elsewhere/ishigami.yaml"
 
 
+@pytest.mark.slow
 def test_another_study_of_the_same_name_is_refused_and_leaves_all_as_it_was(folder):
     files = [path for path in Path("results/ishigami").rglob("*") if path.suffix != ".json"]
     before = {path: path.read_bytes() for path in files if path.is_file()}

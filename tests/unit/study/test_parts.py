@@ -95,6 +95,7 @@ def blocks(folder, name):
     return sorted((folder / "results" / name / "parts").glob("*/*.npz"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", STUDIES)
 def test_merged_parts_are_the_runs_of_one_process(folder, name, monkeypatch):
     """The same values, attributes and digests; in blocks of a few runs, read 10 at a time."""

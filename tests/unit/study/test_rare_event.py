@@ -45,6 +45,7 @@ def test_runs_are_kept_and_give_the_same_bits_for_any_number_of_workers(tmp_path
     assert page.count("<figure") == 1
 
 
+@pytest.mark.slow
 def test_a_study_places_runs_until_its_probability_is_known(tmp_path, page_of):
     until = {"coefficient_of_variation": 0.1, "runs": 700}
     parameters = {"load": il.Normal(5, 1), "strength": il.Normal(11, 1)}
@@ -96,6 +97,7 @@ def test_words_are_drawn_with_their_weights(tmp_path):
     assert np.isnan(rare.first_order), "no plane lies along words"
 
 
+@pytest.mark.slow
 def test_a_process_places_the_same_runs_for_any_number_of_workers(tmp_path, page_of):
     first = il.rare_event(study(tmp_path / "one"), surrogate=True, workers=1)
     stored = sorted((tmp_path / "one" / "load" / "rare_event").rglob("*.npz"))

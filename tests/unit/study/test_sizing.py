@@ -49,6 +49,7 @@ def sized(tmp_path_factory):
     return rod, result, (rod.folder / "sizing.html").read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_the_least_area_is_found_with_the_same_bits_for_any_number_of_workers(sized, tmp_path):
     _, first, page = sized
     other = il.size(study(tmp_path), ["area"], **SETTINGS, workers=2)
@@ -64,6 +65,7 @@ def test_the_least_area_is_found_with_the_same_bits_for_any_number_of_workers(si
     assert page.count("<figure") == 1
 
 
+@pytest.mark.slow
 def test_correlations_count_but_not_with_what_is_chosen(tmp_path):
     def of(pair):
         sampling = il.Pawn(samples=128, parameters=PARAMETERS, correlations=[(*pair, -0.7)])
@@ -134,6 +136,7 @@ def test_a_limit_that_no_run_reaches_is_met_by_the_best_end(tmp_path):
     assert (tmp_path / "rod" / "sizing.html").exists()
 
 
+@pytest.mark.slow
 def test_the_mass_is_that_of_the_beam(tmp_path):
     """A brute-force search on a grid, with many more runs, finds no lighter beam."""
     parameters = {
@@ -180,6 +183,7 @@ def test_studies_without_a_sample_are_refused(tmp_path):
         sizing(declared.declared, declared.folder, Engine(), ["area"], 0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.2, 5.0])
 def test_a_numerical_error_is_stated_and_may_take_the_design(sized, monkeypatch, factor):
     """An error of the load's scatter moves the probability as that of a strength would."""

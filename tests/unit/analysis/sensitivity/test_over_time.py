@@ -148,6 +148,7 @@ def test_blocks_change_no_bit(oscillating, monkeypatch, tmp_path):
     xr.testing.assert_allclose(over_time.analysis(runs), found, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_runs(oscillating, monkeypatch, tmp_path):
     """From shards to runs.nc, analysis and caption; the file has the digests of one block."""
     monkeypatch.setattr(over_time, "ROWS", 64)

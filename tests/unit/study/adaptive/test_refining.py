@@ -57,6 +57,7 @@ def study(solve):
     return of
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("nodes", "finest"), [(21, 81), (41, 161)])
 def test_a_full_study_on_finer_grids_is_within_the_uncertainty(study, solve, nodes, finest):
     runs, analysis = study(nodes)

@@ -101,6 +101,7 @@ def test_a_response_of_ones_own_is_that_of_all_strikes_and_spheres(changes):
     assert runs.momentum.values[1] == alone.impulse.item()
 
 
+@pytest.mark.slow
 def test_the_discretisation_is_found_for_own_responses_as_for_ours():
     """One that returns the peak force has its values, uncertainty and recommendation."""
     found = {}
@@ -122,6 +123,7 @@ def test_the_discretisation_is_found_for_own_responses_as_for_ours():
         np.testing.assert_array_equal(evidence[name].values, known[name].values)
 
 
+@pytest.mark.slow
 def test_own_responses_are_refined_as_ours():
     given = {"own": {"peak": PEAK}, "ours": ["peak_force"]}
     studies = [
@@ -278,6 +280,7 @@ TAKEN = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("function", "sampling"),
     [
