@@ -16,13 +16,10 @@ from impactlab.solver.contact.finite_element import (
     LARGEST_FORCE,
     LARGEST_HARDENING,
     LARGEST_POISSONS_RATIO,
-    LARGEST_ROUND_DEPTH,
-    LARGEST_ROUND_YIELD,
     LARGEST_STIFFNESS,
     LEAST_DENT,
     LEAST_HARDNESS,
     LEAST_POISSONS_RATIO,
-    LEAST_ROUND_HARDNESS,
     LEAST_STIFFNESS,
 )
 from impactlab.solver.contact.history import Pair, energies, yield_stress
@@ -160,9 +157,7 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
     outside |= hardened(pair.shape[25], x) * S_y > LARGEST_HARDENED * case.sphere_yield_stress
     if outside:
         answer.remarks |= HARDENING_OUTSIDE_DATA
-    is_deep = contact.delta_m > LARGEST_ROUND_DEPTH * pair.R and x > LARGEST_ROUND_YIELD
-    hardness = LEAST_ROUND_HARDNESS if is_deep else LEAST_HARDNESS
-    if case.sphere_yield_stress < hardness * max(case.beam_yield_stress, S_y):
+    if case.sphere_yield_stress < LEAST_HARDNESS * max(case.beam_yield_stress, S_y):
         answer.remarks |= SPHERE_YIELD_OUTSIDE_DATA
     stiffness = case.sphere_youngs_modulus / case.beam_youngs_modulus
     if not LEAST_STIFFNESS <= stiffness <= LARGEST_STIFFNESS:

@@ -60,11 +60,6 @@ dent of 3-D is 2 % deeper even with 0.03."""
 LEAST_HARDNESS = 1.0
 """Yield stress of the sphere over that of the flat; a softer sphere is in the data, but was not
 compared with 3-D."""
-LEAST_ROUND_HARDNESS, LARGEST_ROUND_DEPTH, LARGEST_ROUND_YIELD = 1.15, 0.004, 100.0
-"""The same beyond that delta/R and delta/delta_y. The sphere of the data is a half-space with a
-sphere's profile. One that is round (option --round) and as soft as the flat takes less force where
-both flow freely: 1.8 % at 0.008 R and 130 delta_y (0.9 % if four times as stiff), 5 to 7 % at 0.008
-to 0.011 R of a metal of E*/S_y = 800; 0.1 % less if it has 1.25 times the flat's yield stress."""
 LEAST_STIFFNESS, LARGEST_STIFFNESS = 0.33, 10.0
 """Young's modulus of the sphere over that of the flat, of equal Poisson's ratios."""
 LARGEST_CIRCLE, LARGEST_CIRCLE_ACROSS = 0.6, 0.3
