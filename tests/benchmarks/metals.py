@@ -90,7 +90,7 @@ CHOSEN: dict[str, tuple[float, dict[str, dict[str, float]]]] = {
 GRID = il.Discretisation(nodes=201)
 MESHES = 6.0, 6.5
 """Elements over the radius of the contact."""
-DESIGNS = {35: 28, 136: 32, 271: 16}
+DESIGNS = {35: 28, 136: 32, 271: 16, 613: 16}
 """Cases of each Sobol design by its seed; of all but the first, those without a mark are solved."""
 KIND = {"outside_contact_law": "status"} | {
     name: "remarks" for name in WARNINGS if name.endswith(("outside_data", "shallow_dent"))

@@ -421,7 +421,7 @@ def run(args: argparse.Namespace) -> None:
     tops = {*(args.unload or []), args.depth}
     loading = np.linspace(0.09, 1.0, args.steps)[:-1] ** 2 * args.depth
     for number, x in enumerate(sorted({*loading.tolist(), *tops})):
-        if x in tops or number % 4 == 0:
+        if x in tops or number % max(args.steps // 30, 1) == 0:
             note(x, f"{x:.6g}")
         else:
             solve.move(x * solve.delta_y)

@@ -32,7 +32,8 @@ def shape_of(row):
 def test_force_and_unloading_are_those_of_the_finite_elements():
     """Force by thirds of each loading in the law's range; of unloading, force over the largest.
 
-    And where it ends, of what is recovered: where F^(2/3) of its last tenth vanishes.
+    The latter where runs have no mark for yielding in reverse. And where unloading ends, of what is
+    recovered: where F^(2/3) of its last tenth vanishes.
     """
     forces, unloading, ends = [], [], []
     for _, run in DATA.groupby("run"):
@@ -49,7 +50,7 @@ def test_force_and_unloading_are_those_of_the_finite_elements():
             F_m, K, delta_r, n = tops[top]
             left = K * max(x * delta_y - delta_r, 0.0) ** n
             largest = loading.F[loading.x == top]
-            if len(largest):
+            if len(largest) and of[26] * np.sqrt(top) <= metals.LARGEST_COMPARED_REVERSAL:
                 unloading.append(left / F_m - F / largest.iloc[0])
         for top, branch in run[run.x < run.x_max].groupby("x_max"):
             share = branch.F / loading.F[loading.x == top].max()
@@ -62,7 +63,7 @@ def test_force_and_unloading_are_those_of_the_finite_elements():
     assert len(forces) > 200
     assert np.sqrt((forces**2).mean(axis=0)).max() < 0.011
     assert abs(forces).max() < 0.05
-    assert np.sqrt(np.mean(np.square(unloading))) < 0.0127
+    assert np.sqrt(np.mean(np.square(unloading))) < 0.008
     assert len(ends) > 100
     assert abs(np.mean(ends)) < 0.002
     assert np.sqrt(np.mean(np.square(ends))) < 0.005
