@@ -70,15 +70,14 @@ def energy_errors(impact, grid, duration):
 @OPTION
 def test_mirrored_spheres_do_the_same(option):
     """Yielding fibres are mirrored with the rest."""
-    yields, velocity = list(OPTIONS).index(option) < 4, 5.0
+    # at 5 m/s a touch of the modal scheme only grazes, which multiplies rounding
+    yields, velocity = list(OPTIONS).index(option) < 4, 4.9
     if yields:
         velocity = 20.0
     impact, grid = optional(option, velocity, further_spheres=f"0.75 {velocity} 0, 0.5 4 1e-4")
     run = il.simulate(impact, grid, duration="1.5 ms" if yields else "10 ms", samples=101)
     # rounding grows with every touch of a beam that chatters, and sums over modes round otherwise
-    share = 1e-8
-    if option.startswith("modal"):
-        share = 1e-4 if option == "modal strikes" else 1e-6
+    share = 1e-6 if option == "modal" else 1e-8
     w, strain, force = (
         run[name].values for name in ("deflection", "plastic_strain", "contact_force_of_spheres")
     )
