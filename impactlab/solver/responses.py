@@ -29,6 +29,7 @@ from impactlab.solver.contact.metals import (
     LARGEST_RATIO,
     LEAST_RATIO,
     hardened,
+    reversal,
 )
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import is_damped, limit, radius
@@ -153,7 +154,7 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
         answer.remarks |= POISSONS_RATIO_OUTSIDE_DATA
     hardening = case.beam_isotropic_hardening_modulus + case.beam_kinematic_hardening_modulus
     outside = hardening > LARGEST_HARDENING * case.beam_youngs_modulus
-    outside |= pair.shape[26] * np.sqrt(x) > LARGEST_COMPARED_REVERSAL
+    outside |= reversal(np.sqrt(x), pair.shape) > LARGEST_COMPARED_REVERSAL
     outside |= hardened(pair.shape[25], x) * S_y > LARGEST_HARDENED * case.sphere_yield_stress
     if outside:
         answer.remarks |= HARDENING_OUTSIDE_DATA

@@ -21,27 +21,27 @@ from impactlab.verification.solutions import hertz as hertz_forms
 LARGEST_DEPTH = 0.0194
 """d/R beyond which the force of `finite_element` is linear."""
 TERMS = (
-    (0.036613, 0.16959, -0.056369),
-    (0.13369, -0.087641, 0.18325),
-    (0.30151, 0.099664, -0.206),
-    (0.5314, -0.010869, 0.08278),
-    (-0.34934, -0.02234, -0.0032468),
-    (0.3168, 1.0438, -0.1612),
-    (-0.79136, -2.0489, 0.45722),
-    (0.079696, 0.99911, -0.34931),
-    (0.093449, -0.00077097, 0.0048426),
-    (-0.20383, 0.27815, -0.22121),
-    (-0.26728, -0.58846, 0.53895),
-    (-0.06836, 0.37077, -0.056545),
-    (0.091075, -0.010659, -0.046143),
+    (0.032851, 0.16033, -0.05834),
+    (0.14274, -0.074368, 0.18104),
+    (0.30428, 0.099069, -0.20538),
+    (0.52193, -0.0031981, 0.10893),
+    (-0.34967, -0.023661, -0.0060407),
+    (0.28663, 0.94403, -0.09834),
+    (-0.65225, -1.8053, 0.2755),
+    (-0.0032507, 0.86906, -0.2797),
+    (0.090463, -0.0036353, 0.015943),
+    (-0.24825, 0.19878, -0.18911),
+    (-0.16595, -0.43904, 0.41572),
+    (-0.084616, 0.36197, -0.028715),
+    (0.085049, -0.021561, -0.032704),
 )
 """Of the fit to finite elements for bodies of one modulus: constant, linear and quadratic in
 4 (nu - 0.3). Force: of w^2 to w^5 and w^2 ln x; of what is recovered, and of the exponent: of w^2
 to w^4 and w^2 ln x; w = 1 - 1/sqrt(x)."""
 STRAINS = (
-    (-0.0049846, -0.0033871, -0.0013553),
-    (-0.0034556, -0.0003392, 0.0064858),
-    (-0.0024403, 0.01563, 0.0036527),
+    (-0.0048984, -0.003187, -0.0013478),
+    (-0.0032741, -0.0019329, 0.0073625),
+    (-0.0027768, 0.01275, 0.005309),
 )
 """Of w sqrt(x) (force), w^2 sqrt(x): constant, times 100 S/E, and that times 4 (nu - 0.3)."""
 
@@ -187,9 +187,8 @@ def finite_unloading(d: float, F: float, E: float, R: float, S: float, nu: float
     shares, exponents = (
         math.fsum(map(math.prod, zip(terms[i : i + 4], powers, strict=True))) for i in (5, 9)
     )
-    share = 1.0 + 0.33 * w + shares + strain[1] * w**2 * root
+    share = 1.0 + 0.36 * w + shares + strain[1] * w**2 * root
     n = 1.5 - 0.074 * w + exponents + strain[2] * w**2 * root
-    share *= 1.0 + 0.03 * w
     return F, d - share * d_y * math.sqrt(F / hertz(d_y, E, R, S, nu)), n
 
 

@@ -29,14 +29,18 @@ def shape_of(row):
     return shape(row.E_over_S, row.share, row.nu, hardening, kinematic, row.sphere_yield)
 
 
+def outgrows(metal, of, x):
+    return metals.hardened(of[25], x) > metals.LARGEST_HARDENED * metal.sphere_yield
+
+
 def test_force_and_unloading_are_those_of_the_finite_elements():
     """Force by thirds of each loading in the law's range; of unloading, force over the largest.
 
-    The latter is held where metal yields in reverse, throughout in the last runs. And where
-    unloading ends, of what is recovered: where F^(2/3) of its last tenth vanishes.
+    The latter where it was fitted, and throughout. And where unloading ends, of what is recovered:
+    where F^(2/3) of its last tenth vanishes.
     """
-    forces, unloading, held, ends = [], [], [], []
-    for number, run in DATA.groupby("run"):
+    forces, unloading, beyond, ends = [], [], [], []
+    for _, run in DATA.groupby("run"):
         S_y, of = E / run.E_over_S.iloc[0], shape_of(run.iloc[0])
         delta_y = yield_indentation(E, R, S_y)
         run = run[run.x_max <= finite_element.LARGEST_DEPTH * R / delta_y]
@@ -52,8 +56,9 @@ def test_force_and_unloading_are_those_of_the_finite_elements():
             largest = loading.F[loading.x == top]
             if len(largest):
                 error = left / F_m - F / largest.iloc[0]
-                is_held = of[26] * np.sqrt(top) > metals.LARGEST_REVERSAL
-                (held if is_held else unloading).append((number, error))
+                fitted = metals.reversal(np.sqrt(top), of) <= metals.LARGEST_REVERSAL
+                fitted &= not outgrows(run.iloc[0], of, top)
+                (unloading if fitted else beyond).append(error)
         for top, branch in run[run.x < run.x_max].groupby("x_max"):
             share = branch.F / loading.F[loading.x == top].max()
             last = (share > 0.015) & (share < 0.12)
@@ -65,9 +70,9 @@ def test_force_and_unloading_are_those_of_the_finite_elements():
     assert len(forces) > 200
     assert np.sqrt((forces**2).mean(axis=0)).max() < 0.011
     assert abs(forces).max() < 0.05
-    earlier = [error for number, error in unloading + held if number < 256]
-    assert np.sqrt(np.mean(np.square([error for _, error in unloading]))) < 0.008
-    assert np.sqrt(np.mean(np.square(earlier))) < 0.0127
+    assert len(unloading) > 20 * len(beyond)
+    assert np.sqrt(np.mean(np.square(unloading))) < 0.008
+    assert np.sqrt(np.mean(np.square(unloading + beyond))) < 0.0105
     assert len(ends) > 100
     assert abs(np.mean(ends)) < 0.002
     assert np.sqrt(np.mean(np.square(ends))) < 0.005
@@ -91,10 +96,10 @@ def test_soft_metals_are_met_or_marked():
         strain = 0.2 * np.sqrt(2.0 * x * delta_y / R)
         flow = 1.0 + modulus * (metal.isotropic + metal.kinematic) * strain
         assert metals.hardened(of[25], x) == pytest.approx(flow, rel=1e-12)
-        outgrown = flow > metals.LARGEST_HARDENED * metal.sphere_yield
-        marked.append(outgrown or of[26] * np.sqrt(x) > metals.LARGEST_COMPARED_REVERSAL)
+        reverses = metals.reversal(np.sqrt(x), of) > metals.LARGEST_COMPARED_REVERSAL
+        marked.append(outgrows(metal, of, x) or reverses)
     missed, marked = np.array(missed), np.array(marked)
-    assert (marked.sum(), len(marked)) == (6, 24)
+    assert (marked.sum(), len(marked)) == (5, 24)
     assert abs(missed[~marked]).max() < 0.02
     assert np.sqrt(np.mean(missed[~marked] ** 2)) < 0.01
 
@@ -126,4 +131,4 @@ def test_no_metal_creates_energy(crowding):
         assert (F * (x - dent) / (n + 1.0) <= work).all(), (ratio, of)
         assert (dent >= 0.0).all()
         assert (dent < x).all()
-        assert ((n >= 1.0) & (n <= 2.0)).all()
+        assert ((n >= 1.0) & (n <= 2.5)).all()
