@@ -101,8 +101,10 @@ oldest: $(MADE_OLDEST)
 	PATH="$(abspath $(OLDEST)/bin):$$PATH" python -m pytest -n auto -W default --disable-warnings \
 	  -m 'not slow and not long and not chaos' $(addprefix tests/unit/,$(OLDEST_TESTS)) $(PYTEST_ARGS)
 
+# Sphinx deals out pages once, as many to each job: with one for every core one core ends long before.
 docs: $(MADE)-docs
-	$(IN_VENV) python -m sphinx -W --keep-going --quiet --jobs auto -d build/docs docs site
+	$(IN_VENV) python -m sphinx -W --keep-going --quiet \
+	  --jobs $$($(BIN)/python -c 'import os; print(2 * os.cpu_count())') -d build/docs docs site
 	@echo 'Done. Open site/index.html'
 
 stored: $(MADE)-docs
