@@ -17,10 +17,9 @@ one over all, one for deep indentations and much hardening, one for soft metals,
 dents, one for soft metals that harden, one for kinematic hardening. Of runs 188 to 203, a design
 like the first for the depths of the second, 252 to 255 and 272, metals whose dents had been 3 to 5
 % off in 3-D, and 289 to 292, shallow dents where a fit without them creates energy, the options are
-kept in the data alone. What is recovered is as much too large as
-the force is too small by the mesh (BIAS). Spheres that yield are round where the column `round`
-says so, as in new solves; the others were solved as half-spaces with a sphere's profile, which is
-within 0.5 % where they hardly flow.
+kept in the data alone. What is recovered is as much too large as the force is too small by the mesh
+(BIAS). Spheres that yield are round where the column `round` says so, as in new solves; the others
+were solved as half-spaces with a sphere's profile, which is within 0.5 % where they hardly flow.
 
 Unloading is fitted up to where z of metals.py ends, and where the sphere yields no more than in the
 data. The constants of z are rounded: least squares over all seven gives 0.573, -0.282, 1.255, 1.31,

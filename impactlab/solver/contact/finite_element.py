@@ -118,10 +118,10 @@ def curve(
         bend += Q * (shape[16] + w * shape[17] + log * shape[18])
         share += Q * (w * (shape[19] + w * shape[20]) + Q * shape[21])
         n += Q * (w * (shape[22] + w * shape[23]) + Q * shape[24])
-        reversed_ = min(reversal(s, shape), LARGEST_REVERSAL) - LEAST_REVERSAL
-        if reversed_ > 0.0:
-            share *= 1.0 + REVERSED_RECOVERY * reversed_
-            n += REVERSED_EXPONENT * reversed_
+        excess = min(reversal(s, shape), LARGEST_REVERSAL) - LEAST_REVERSAL
+        if excess > 0.0:
+            share *= 1.0 + REVERSED_RECOVERY * excess
+            n += REVERSED_EXPONENT * excess
         n = min(max(n, 1.0), 2.5)
     bent = math.exp(0.5 * bend)  # the square root of F over Hertz's
     F, recovered = (
