@@ -25,13 +25,12 @@ TARGET = {
 }
 """Largest difference from 3-D in %."""
 EXCEPTIONS = {
-    ("design 33", "permanent_indentation"): 3.5,
-    ("design 36", "contact_duration"): 2.2,
-    ("design 72", "contact_duration"): 2.3,
+    ("design 33", "permanent_indentation"): 4.0,
+    ("design 72", "contact_duration"): 2.5,
     ("design 72", "peak_force"): 2.2,
 }
 """Misses without a mark, and their limits in %: a dent in a deep beam, which still bends where its
-3-D run ends, a flat beam, and a soft metal."""
+3-D run ends, and a soft metal."""
 
 
 @pytest.fixture(scope="module")
