@@ -22,8 +22,9 @@ kept in the data alone. What is recovered is as much too large as the force is t
 were solved as half-spaces with a sphere's profile, which is within 0.5 % where they hardly flow.
 
 Unloading is fitted up to where z of metals.py ends, and where the sphere yields no more than in the
-data. The constants of z are rounded: least squares over all seven gives 0.573, -0.282, 1.255, 1.31,
-0.468, 0.375 and 0.752.
+data. The seven constants of z, of what it adds and of where it begins come from least squares over
+the same unloading, rounded to two or three digits, before the last four runs and with Hertz's power
+for LAST_POWER; the fits after them keep the constants, and what they miss is what is printed.
 """
 
 from __future__ import annotations
