@@ -78,6 +78,27 @@ def test_force_and_unloading_are_those_of_the_finite_elements():
     assert np.sqrt(np.mean(np.square(ends))) < 0.005
 
 
+def test_dents_of_metals_that_yield_in_reverse_are_those_of_the_finite_elements():
+    """Where F^(2/3) of the last three forces vanishes, with and without isotropic hardening."""
+    missed = []
+    for _, run in DATA.groupby("run"):
+        metal, of = run.iloc[0], shape_of(run.iloc[0])
+        S_y = E / metal.E_over_S
+        delta_y = yield_indentation(E, R, S_y)
+        for top, branch in run[run.x < run.x_max].groupby("x_max"):
+            z = metals.reversal(np.sqrt(top), of)
+            within = metals.LEAST_REVERSAL < z <= metals.LARGEST_REVERSAL
+            within &= top * delta_y <= finite_element.LARGEST_DEPTH * R
+            if within and not outgrows(metal, of, top):
+                last = branch.nsmallest(3, "F")
+                slope, start = np.polyfit(last.x, last.F ** (2 / 3), 1)
+                delta_r = curve(top * delta_y, E, R, S_y, NU, of)[2]
+                missed.append(-delta_r / delta_y * slope / start - 1.0)
+    assert len(missed) > 15
+    assert np.sqrt(np.mean(np.square(missed))) < 0.012
+    assert np.abs(missed).max() < 0.03
+
+
 def test_soft_metals_are_met_or_marked():
     """Force over the last third of loading; marks by hardening, as of a run of the same depth.
 
