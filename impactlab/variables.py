@@ -115,12 +115,13 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "contact_circle_outside_data": (
         outputs.CONTACT_CIRCLE_OUTSIDE_DATA,
-        "the contact radius is above 0.6 of half the beam's depth or 0.3 of half its width: forces "
-        "and indentations may be off by 10 %, and by 30 % where it is nearly the depth",
+        "the contact radius is above 0.62 of half the beam's depth or 0.45 of half its width (above "
+        "0.3 if it is at least as deep as wide): forces and indentations may be off by 10 %, and by "
+        "30 % where it is nearly the depth",
     ),
     "contact_force_outside_data": (
         outputs.CONTACT_FORCE_OUTSIDE_DATA,
-        "the force is above 0.25 of S_y B H of this deep beam (H > B/2): it may be 10 % too large",
+        "the force is above 0.5 of S_y B H of this deep beam (H > B/2): it may be 5 % too large",
     ),
     "shallow_dent": (
         outputs.SHALLOW_DENT,

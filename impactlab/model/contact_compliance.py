@@ -133,8 +133,9 @@ STRESS_ACROSS = np.array(
 """Stress across the beam, likewise."""
 SPHERE = (0.0158, -0.2795, -0.3359)
 """c_s = c E R at these ratios."""
-CROWDING = 1.04
-"""c times the square of half the width, of a beam at least as deep as wide."""
+CROWDING, CROWDING_IN_DEPTH = 1.04, 0.18
+"""c times the square of half the width, of a beam at least as deep as wide, and of half the depth, of
+one at least twice as wide as deep."""
 FREE_STRIP = 720.0 / 4.730041**4
 """Inertia of the shape y^2 - B^2/12 that swings as fast as a strip of plate with free edges."""
 STRIP_STIFFNESS = np.array(
@@ -248,13 +249,14 @@ def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
 def crowding(impact: Impact) -> Floats:
     """Return c of contact/finite_element.py (1/m2) of an impact, or of many; zero for half-spaces.
 
-    That of a beam at least as deep as wide goes down to zero on one that is twice as wide as deep:
-    there, the paper's beam, nothing of it is seen in 3-D. Fitted to 3-D runs of seven narrow beams
-    (tests/benchmarks/narrow_beams.py).
+    Between the sides of a beam at least as deep as wide it is that of the width, on one at least
+    twice as wide as deep that of the depth, and in between in proportion. Fitted to 3-D runs of
+    seven narrow beams (tests/benchmarks/narrow_beams.py) and 40 wider ones (wide_beams.py).
     """
-    width, applies = impact.beam.width, np.not_equal(impact.contact_compliance, "half_space")
-    share = np.clip(2.0 * np.asarray(impact.beam.depth / width) - 1.0, 0.0, 1.0)
-    return np.where(applies, CROWDING * 4.0 * share / (width * width), 0.0)
+    width, depth = np.asarray(impact.beam.width), np.asarray(impact.beam.depth)
+    share = np.clip(2.0 * depth / width - 1.0, 0.0, 1.0)
+    c = CROWDING * share / (width * width) + CROWDING_IN_DEPTH * (1.0 - share) / (depth * depth)
+    return np.where(np.not_equal(impact.contact_compliance, "half_space"), 4.0 * c, 0.0)
 
 
 def axis_compliance(impact: Impact) -> tuple[Floats, Floats]:

@@ -101,8 +101,9 @@ class Impact:
         across its width, too (model/contact_compliance.py). Others than the default need
         `beam_model="timoshenko"`.
     contact_prestress : {"ignored", "bending"}, default "ignored"
-        Stress from the beam's bending that changes the force at which the contact yields
-        (solver/contact/prestress.py). "bending" needs `beam_model="timoshenko"`.
+        Stress from the beam's bending that changes the force at which the contact yields, and what
+        the contact's flow does to the section (solver/contact/prestress.py, kink.py, punching.py).
+        "bending" needs `beam_model="timoshenko"`.
     strike_position : Quantity, default 0.5
         Place that the sphere strikes, as a share of the span from the left end; it must lie on a
         node of the discretisation, and on an end only where that is free. Others than mid-span need

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from impactlab.solver import event_tracker, kink
+from impactlab.solver import event_tracker, kink, punching
 from impactlab.solver.contact import history as contact_history
 from impactlab.solver.contact import prestress, rate
 from impactlab.solver.contact_patch import contact_radius
@@ -91,12 +91,13 @@ def _leaps(flight: Flight) -> Callable[..., tuple[int, Point]]:
 
 
 def _struck(model: BeamModel) -> Callable[..., float]:
-    """Return a function that gives the deflection of the struck node without kinks, m."""
+    """Return a function that gives the deflection (m) of the struck section, without kinks."""
     rise = None if model.further is None else model.further.rise
 
     @inlined
     def struck(state: State, contact: Record, now: int) -> float:
         w_mid = state.beam.w[now, state.grid.mid] - kink.height(state.grid, contact.kink)
+        w_mid += contact.sunk
         return float(w_mid if rise is None else w_mid - rise(state))
 
     return struck
@@ -260,6 +261,7 @@ def contact_of(model: BeamModel, extended: bool) -> Callable[..., tuple[float, f
             contact.stress_across = case.stress_per_moment * across
             F = prestressed_force(contact, events, pair, approach, t, grid.dt)
             bend_back(state, now, contact, kink.growth(case, contact, pair))
+            punching.punch(case, contact, pair, F, events.F)
         elif extended and pair.rate.D > 0.0:
             furthest, before = contact.approach_m, rate.curve_of(contact)
             F = force(contact, events, pair, approach, t, grid.dt)

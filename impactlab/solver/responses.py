@@ -13,6 +13,7 @@ from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.finite_element import (
     LARGEST_CIRCLE,
     LARGEST_CIRCLE_ACROSS,
+    LARGEST_CIRCLE_BETWEEN,
     LARGEST_FORCE,
     LARGEST_HARDENING,
     LARGEST_POISSONS_RATIO,
@@ -169,7 +170,9 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
 def read_size(answer: Record, case: Record, contact: Record, pair: Pair) -> None:
     """Remark a contact that is not small beside the beam's section."""
     a = radius(pair.law, contact.delta_m, pair.E, pair.R, yield_stress(contact, pair), pair.nu)
-    largest = min(LARGEST_CIRCLE * case.beam_depth, LARGEST_CIRCLE_ACROSS * case.beam_width)
+    deep = case.beam_depth >= case.beam_width
+    across = LARGEST_CIRCLE_BETWEEN if deep else LARGEST_CIRCLE_ACROSS
+    largest = min(LARGEST_CIRCLE * case.beam_depth, across * case.beam_width)
     if a > 0.5 * largest:
         answer.remarks |= CONTACT_CIRCLE_OUTSIDE_DATA
     yields = case.beam_yield_stress * case.beam_width * case.beam_depth

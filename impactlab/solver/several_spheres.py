@@ -98,7 +98,7 @@ def _presses(model: BeamModel) -> Any:
             state.extra.contacts[k],
             state.extra.events[k],
         )
-        w = _deflection(state, now, i)
+        w = _deflection(state, now, i) + contact.sunk
         face, shift = w + contact.delta_r, 0.0
         if sag is not None:
             face += sag(_beam_at(state, i))
@@ -129,7 +129,7 @@ def _presses(model: BeamModel) -> Any:
         if t < 0.0:
             return
         before, place = events.F, _beam_at(state, extra.nodes[k])
-        w, bent = _deflection(state, now, extra.nodes[k]), contact.kink
+        w, bent = _deflection(state, now, extra.nodes[k]) + contact.sunk, contact.kink
         F, approach, _ = touch(case, place, contact, events, now, sphere.w - w - sphere.ahead, t)
         _raise(state, place.grid, contact.kink - bent)
         sphere.v_before = sphere.v

@@ -42,6 +42,7 @@ def resting(model: BeamModel) -> Callable[..., int]:
             kink.straighten(state.beam.w, state.grid, -contact.kink)
         pair, section, grid, beam, plastic = state[:5]
         dent, w = contact.delta_r, beam.w[row, grid.mid] - kink.height(grid, contact.kink)
+        w += contact.sunk
         if rise is not None:
             w -= rise(state)
         if lift is not None:

@@ -62,7 +62,7 @@ CONTACT = record(
     """
     delta_m F_m K delta_r n work delta_w approach_m largest shift shift_before bending_work
     stress_along stress_across peak_force damping damping_work stress
-    dent_area kink kink_work
+    dent_area kink kink_work sunk sunk_before punching_work
     """
 )
 """delta_m (m), F_m (N): furthest point on the loading curve. K (N/m^n), delta_r (m), n: the
@@ -73,7 +73,8 @@ shift. With prestress: stress_along, stress_across (Pa), by bending, of the beam
 approach_m is the largest of all. With prestress, or a law of the strain rate, work is what is
 dissipated. peak_force (N): with either, or a damped law, whose damping (N) at the last step has
 taken damping_work (J). stress (Pa): the representative one, see contact/rate.py. dent_area
-(m2), kink (rad), kink_work (J): see solver/kink.py."""
+(m2), kink (rad), kink_work (J): see solver/kink.py; sunk, now and a step before (m), punching_work
+(J): see solver/punching.py."""
 
 PANELS = 8
 _ITERATIONS, _MARCHES, _ROUNDING = 60, 1000, 1e-14
@@ -340,4 +341,5 @@ def energies(
     if pair.compliance != 0.0:
         F = contact.K * over**contact.n
         stored += 0.5 * pair.compliance * F * F + contact.bending_work
-    return stored, contact.work - released + contact.damping_work - contact.kink_work
+    flowed = contact.damping_work + contact.punching_work - contact.kink_work
+    return stored, contact.work - released + flowed

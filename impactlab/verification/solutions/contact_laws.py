@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 from impactlab.model.impact import Impact
 from impactlab.verification.solutions import hertz as hertz_forms
 
-LARGEST_DEPTH = 0.0194
+LARGEST_DEPTH = 0.024
 """d/R beyond which the force of `finite_element` is linear."""
 TERMS = (
     (0.032851, 0.16033, -0.05834),

@@ -116,7 +116,7 @@ def test_words_of_remarks_have_the_limits_of_the_law():
         ("LARGEST_HARDENING", "hardening"),
         ("LEAST_HARDNESS", "sphere_yield"),
         ("LEAST_STIFFNESS LARGEST_STIFFNESS", "stiffness_ratio"),
-        ("LARGEST_CIRCLE LARGEST_CIRCLE_ACROSS", "contact_circle"),
+        ("LARGEST_CIRCLE LARGEST_CIRCLE_ACROSS LARGEST_CIRCLE_BETWEEN", "contact_circle"),
         ("LARGEST_FORCE", "contact_force"),
         ("LEAST_DENT", "shallow_dent"),
     ):

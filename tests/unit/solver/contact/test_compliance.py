@@ -20,7 +20,7 @@ from impactlab.solver.contact.history import CONTACT, Pair, energies, force, loa
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.verification.solutions.beam_modes import strip_odd_modes, timoshenko_odd_modes
 
-from ....benchmarks import narrow_beams, section_modes
+from ....benchmarks import large_contacts, section_modes
 
 pytestmark = pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 
@@ -238,39 +238,60 @@ def test_a_strip_that_yields_keeps_its_energy(load):
     assert np.unique(three.peak_force).size == 3
 
 
-@pytest.mark.parametrize("name", [name for name in narrow_beams.BEAMS if " 10 m/s" not in name])
+BEAMS = pd.read_csv(large_contacts.FILE, index_col="beam")
+NARROW = BEAMS[BEAMS.depth >= BEAMS.width]
+WIDER = BEAMS[BEAMS.depth < BEAMS.width]
+
+
+def differences(name, **options):
+    """Return how far force and indentation of the first blow are off 3-D, and the run."""
+    case = large_contacts.impact(BEAMS.loc[name])
+    grid = il.Discretisation(nodes=101, **options)
+    run = il.simulate(case, grid, duration=large_contacts.duration(case), samples=1001)
+    answers = run.contact_force.max().item(), run.indentation.max().item()
+    return np.array(answers) / BEAMS.loc[name, large_contacts.RESPONSES[:2]].to_numpy() - 1.0, run
+
+
+@pytest.mark.parametrize("name", NARROW.index[(NARROW.use == "crowding") & (NARROW.velocity < 10)])
 def test_between_the_sides_of_a_narrow_beam_metal_flows_as_in_3d(name, monkeypatch):
     """3-D runs to which the constants were fitted, and from whose axis they reckon indentations."""
-    solid = pd.read_csv(narrow_beams.FILE, index_col="beam").loc[name]
-    impact = narrow_beams.impact(*narrow_beams.BEAMS[name])
-    bound = 0.06 if "soft" in name else 0.015
-
-    def errors():
-        run = il.simulate(impact, il.Discretisation(nodes=101), duration="1 ms")
-        return [run[response].item() / solid[response] - 1.0 for response in narrow_beams.RESPONSES]
-
-    force, indentation, _ = errors()
-    assert max(abs(force), abs(indentation)) < bound
+    errors, _ = differences(name)
+    assert np.abs(errors).max() < (0.06 if "soft" in name else 0.015)
     monkeypatch.setattr("impactlab.model.contact_compliance.CROWDING", 0.0)
-    assert abs(force) < 0.7 * abs(errors()[0])
+    assert abs(errors[0]) < 0.7 * abs(differences(name)[0][0])
 
 
-@pytest.mark.parametrize("name", narrow_beams.DEEPER | narrow_beams.HELD_OUT)
+@pytest.mark.parametrize("name", NARROW.index[NARROW.use.isin(["shared metal", "after"])])
 def test_contact_and_bending_share_the_metal_between_the_sides(name):
     """Sides and bending share the metal as in 3-D; without that the force is 4 to 7 % too large."""
-    parameters = (narrow_beams.DEEPER | narrow_beams.HELD_OUT)[name]
-    solid = pd.read_csv(narrow_beams.FILE, index_col="beam").loc[name]
-    grid = il.Discretisation(nodes=101, courant=0.4)
-    run = il.simulate(narrow_beams.impact(*parameters), grid, duration="0.15 ms")
-    assert abs(run.contact_force.max().item() / solid.peak_force - 1.0) < 0.02
-    bound = 0.035 if name.startswith("25 by 35") else 0.015
-    assert abs(run.indentation.max().item() / solid.maximum_indentation - 1.0) < bound
+    (force, indentation), run = differences(name, courant=0.4)
+    assert abs(force) < 0.02
+    assert abs(indentation) < (0.035 if name.startswith("25 by 35") else 0.015)
     assert run.energy_error < 1e-3
 
 
-def test_neither_a_wide_beam_nor_a_half_space_has_sides():
+def test_a_section_is_punched_as_in_3d():
+    """Forces up to half of S_y B H; without punching they are up to 6 % too large."""
+    marked = outputs.CONTACT_CIRCLE_OUTSIDE_DATA | outputs.CONTACT_FORCE_OUTSIDE_DATA
+    errors = []
+    for name in WIDER.index[WIDER.peak_force.notna()]:
+        difference, run = differences(name)
+        assert run.energy_error < 1e-3
+        if not run.remarks.item() & marked:
+            errors.append(difference)
+    print(len(errors), np.sqrt(np.mean(np.square(errors), axis=0)), np.abs(errors).max(axis=0))
+    assert 0
+
+
+def test_the_metal_is_crowded_by_the_width_of_narrow_beams_and_the_depth_of_wide_ones():
     depth = TIMOSHENKO.beam.depth
-    for width, c in ((2.5 * depth, 0.0), (2.0 * depth, 0.0), (depth, 4.16), (0.5 * depth, 4.16)):
-        narrow = replace(TIMOSHENKO, beam=replace(TIMOSHENKO.beam, width=width))
-        assert crowding(narrow) == pytest.approx(c / width**2)
-        assert crowding(replace(narrow, contact_compliance="half_space")) == 0.0
+    in_depth = 0.72 / depth**2
+    for width, c in (
+        (2.5 * depth, in_depth),
+        (2.0 * depth, in_depth),
+        (4.0 / 3.0 * depth, 0.5 * (in_depth + 2.34 / depth**2)),
+        (depth, 4.16 / depth**2),
+        (0.5 * depth, 16.64 / depth**2),
+    ):
+        beam = replace(TIMOSHENKO.beam, width=width)
+        assert crowding(replace(TIMOSHENKO, beam=beam)) == pytest.approx(c)
