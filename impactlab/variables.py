@@ -115,9 +115,9 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "contact_circle_outside_data": (
         outputs.CONTACT_CIRCLE_OUTSIDE_DATA,
-        "the contact radius is above 0.62 of half the beam's depth or 0.45 of half its width (above "
-        "0.3 if it is at least as deep as wide): forces and indentations may be off by 10 %, and by "
-        "30 % where it is nearly the depth",
+        "the contact radius is above 0.62 of half the beam's depth, or above 0.45 of half its "
+        "width, or 0.3 where H >= B: forces and indentations may be off by 10 %, and by 30 % where "
+        "it is nearly the depth",
     ),
     "contact_force_outside_data": (
         outputs.CONTACT_FORCE_OUTSIDE_DATA,

@@ -134,8 +134,8 @@ STRESS_ACROSS = np.array(
 SPHERE = (0.0158, -0.2795, -0.3359)
 """c_s = c E R at these ratios."""
 CROWDING, CROWDING_IN_DEPTH = 1.04, 0.18
-"""c times the square of half the width, of a beam at least as deep as wide, and of half the depth, of
-one at least twice as wide as deep."""
+"""c times the square of half the width, of a beam at least as deep as wide, and of half the depth,
+of one at least twice as wide as deep."""
 FREE_STRIP = 720.0 / 4.730041**4
 """Inertia of the shape y^2 - B^2/12 that swings as fast as a strip of plate with free edges."""
 STRIP_STIFFNESS = np.array(
@@ -251,7 +251,7 @@ def crowding(impact: Impact) -> Floats:
 
     Between the sides of a beam at least as deep as wide it is that of the width, on one at least
     twice as wide as deep that of the depth, and in between in proportion. Fitted to 3-D runs of
-    seven narrow beams (tests/benchmarks/narrow_beams.py) and 40 wider ones (wide_beams.py).
+    seven narrow beams and some 40 wider ones (tests/benchmarks/large_contacts.py).
     """
     width, depth = np.asarray(impact.beam.width), np.asarray(impact.beam.depth)
     share = np.clip(2.0 * depth / width - 1.0, 0.0, 1.0)

@@ -8,8 +8,8 @@ contact flows downwards as well, and takes the axis with it, further than the be
 as long as that grows. H sqrt(B H) lies between the section, B H, which a beam shears along, and the
 depth times the contact's circle, along which a plate is punched. It is no part of the indentation,
 which counts from the axis. The numbers were fitted, with the depth's part of the crowding
-(model/contact_compliance.py), to force and indentation of 40 impacts in 3-D finite elements
-(tests/benchmarks/wide_beams.py).
+(model/contact_compliance.py), to force and indentation of some 40 impacts in 3-D finite
+elements (tests/benchmarks/large_contacts.py).
 """
 
 import math

@@ -1,4 +1,4 @@
-"""The corrected beam model beside 3-D finite elements where the contact is large beside the section.
+"""The corrected beam model beside 3-D, where the contact is large beside the section.
 
 python tests/benchmarks/large_contacts.py
 
@@ -10,9 +10,9 @@ ones (punching). The others (after) were solved when all numbers were fixed, and
 whatever they show.
 
 Most answers are of meshes with 9 and 9.5 elements over the radius that is expected of the contact;
-those of 6 to 7.5 have up to 2 % more force. Of some of the narrow beams they are the means of 5, 5.5
-and 6 elements, or of one mesh with 9. Lines without a dent are of runs that ended after the largest
-indentation of the first blow. A beam without an answer is solved, in half a minute on two cores.
+those of 6 to 7.5 have up to 2 % more force. Of some of the narrow beams they are the means of 5,
+5.5 and 6 elements, or of one mesh with 9. Lines without a dent are of runs that ended after the
+largest indentation of the first blow. A beam without an answer is solved, in a minute on two cores.
 """
 
 from __future__ import annotations

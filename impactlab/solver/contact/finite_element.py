@@ -15,8 +15,8 @@ The coefficients and q follow from the metals, and so does what both gain where 
 reverse (metals.py). tests/benchmarks/contact_law.py fits them
 and prints how well.
 
-Between the sides of a narrow beam metal flows more easily than in a half-space, with the contact
-radius a and the beam's crowding c (0: a half-space)
+Between the faces of a beam metal flows more easily than in a half-space, with the contact radius a
+and the beam's crowding c (0: a half-space)
     F -> F/(1 + w^2 min(c a^2, 1)^1.25)
 and what unloading recovers -> the square root of that factor. model/contact_compliance.py has c.
 `sideways` is the share of the force that this takes off.
@@ -148,7 +148,7 @@ def curve(
 
 @compiled
 def sideways(delta: float, E: float, R: float, S_y: float, crowding: float) -> float:
-    """Return the share of a half-space's force that the sides of a narrow beam take off.
+    """Return the share of a half-space's force that the faces of a beam take off.
 
     crowding: c (1/m2).
     """

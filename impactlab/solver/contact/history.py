@@ -138,7 +138,7 @@ def pair_curve(pair: Pair, delta: float, S_y: float) -> Unloading:
 
 @compiled
 def sideways(contact: Record, pair: Pair) -> float:
-    """Return the share of the contact's force that the sides of a narrow beam take off."""
+    """Return the share of the contact's force that the faces of a beam take off."""
     if pair.crowding == 0.0 or pair.law != _OF_METALS:
         return 0.0
     S_y = yield_stress(contact, pair)

@@ -25,7 +25,7 @@ Between the sides of a narrow beam the contact's plastic zone takes the whole wi
 metal with bending: with the share sigma of the force that the sides take off (history.sideways) and
 the compression s of the struck face by bending over the yield stress, F becomes F/(1 + q s sigma)
 (q: SHARED). The section in turn gives way to the contact's flow (kink.py). Both numbers were fitted
-to 3-D finite elements of narrow beams (tests/benchmarks/narrow_beams.py).
+to 3-D finite elements of narrow beams (tests/benchmarks/large_contacts.py).
 
 s_x is that of the moment, s_y that of bending across the width (solver/strip.py); both fall with
 depth, and have a part in the force itself, the half-space's stresses taken out

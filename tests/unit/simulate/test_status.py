@@ -73,8 +73,8 @@ DEFAULT_LAW = replace(il.paper_impact(contact="finite_element"), beam_model="tim
         ),
         (
             "contact_force",
-            {"velocity": 7.0, "beam_depth": 0.02, "beam_width": 0.04},
-            {"velocity": 10.5, "beam_depth": 0.02, "beam_width": 0.04},
+            {"velocity": 12.0, "beam_depth": 0.02, "beam_width": 0.026},
+            {"velocity": 14.0, "beam_depth": 0.02, "beam_width": 0.026},
         ),
     ],
 )

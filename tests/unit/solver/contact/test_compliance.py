@@ -256,7 +256,7 @@ def differences(name, **options):
 def test_between_the_sides_of_a_narrow_beam_metal_flows_as_in_3d(name, monkeypatch):
     """3-D runs to which the constants were fitted, and from whose axis they reckon indentations."""
     errors, _ = differences(name)
-    assert np.abs(errors).max() < (0.06 if "soft" in name else 0.015)
+    assert np.abs(errors).max() < (0.04 if "soft" in name else 0.015)
     monkeypatch.setattr("impactlab.model.contact_compliance.CROWDING", 0.0)
     assert abs(errors[0]) < 0.7 * abs(differences(name)[0][0])
 
@@ -279,8 +279,9 @@ def test_a_section_is_punched_as_in_3d():
         assert run.energy_error < 1e-3
         if not run.remarks.item() & marked:
             errors.append(difference)
-    print(len(errors), np.sqrt(np.mean(np.square(errors), axis=0)), np.abs(errors).max(axis=0))
-    assert 0
+    assert len(errors) > 30
+    assert np.sqrt(np.mean(np.square(errors), axis=0)).max() < 0.01
+    assert np.abs(errors).max() < 0.02
 
 
 def test_the_metal_is_crowded_by_the_width_of_narrow_beams_and_the_depth_of_wide_ones():
