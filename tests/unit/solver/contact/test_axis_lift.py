@@ -67,15 +67,16 @@ def test_permanent_indentation_of_a_strip_is_dent_and_lift():
     grid = il.Discretisation(nodes=101)
     run = run_dataset(impact, grid, duration=0.25e-3)
     bodies = effective_modulus(impact), impact.sphere.radius, impact.beam.material.yield_stress, nu
-    metals = make_pair(case_table(impact, grid, duration=0.25e-3)[0]).shape
+    pair = make_pair(case_table(impact, grid, duration=0.25e-3)[0])
+    law = *bodies, pair.shape, pair.crowding
 
     def missed(delta):
-        return finite_element.curve(delta, *bodies, metals)[0] - run.peak_force.item()
+        return finite_element.curve(delta, *law)[0] - run.peak_force.item()
 
     delta = brentq(missed, 1e-5, 1e-3)
     share = finite_element.radius(delta, *bodies) / (0.5 * impact.beam.depth)
     raised = 1.0 + axis_lift.plastic_lift(delta / yield_indentation(*bodies[:3]), share)
-    residual = finite_element.curve(delta, *bodies, metals)[2]
+    residual = finite_element.curve(delta, *law)[2]
     dent = residual * raised
     assert run.permanent_indentation.item() == pytest.approx(dent, rel=1e-6)
     assert raised > 1.005
