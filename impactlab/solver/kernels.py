@@ -72,13 +72,24 @@ def _end_of_alike(cases: Array, start: int) -> int:
 
 @compiled
 def _keep_profiles(
-    state: State, now: int, r: int, deflection: Array, plastic_strain: Array, peeq: Array
+    state: State,
+    now: int,
+    sunk: float,
+    r: int,
+    deflection: Array,
+    plastic_strain: Array,
+    peeq: Array,
 ) -> None:
-    """Keep the beam's final state as that of run r, if it is asked for."""
+    """Keep the beam's final state as that of run r, if it is asked for.
+
+    sunk: how far the struck section lay below the beam as the last step began (m): punching.py.
+    """
     # element by element: slices would compile the message of numpy's error, for seconds
     for i in range(deflection.shape[1]):
         node = half_node(state.grid, i)
         deflection[r, i] = state.beam.w[now, node]
+        if node == state.grid.mid:
+            deflection[r, i] += sunk
         for j in range(peeq.shape[2]):
             plastic_strain[r, i, j] = state.plastic.plastic_strain[node, j]
             peeq[r, i, j] = state.plastic.peeq[node, j]
@@ -222,7 +233,7 @@ def _kernel(name: str, model: BeamModel, extended: bool = False) -> Callable[...
                     continue
                 if deflection.shape[1] > 0:
                     deflect(state, now)
-                _keep_profiles(state, now, r, deflection, plastic_strain, peeq)
+                _keep_profiles(state, now, contact.sunk_before, r, deflection, plastic_strain, peeq)
                 rest_single(case, answer, contact, event, series[r], state)
 
     kernel.__qualname__ = name
