@@ -344,6 +344,8 @@ def with_spheres(model: BeamModel) -> BeamModel:
     @compiled
     def deflect(state: State, now: int) -> None:
         plain_deflect(_beam(state), now)
+        for k in range(state.extra.nodes.size):
+            state.beam.w[now, state.extra.nodes[k]] += state.extra.contacts[k].sunk_before
 
     @compiled
     def spread(state: State, now: int, F: float, a: float) -> tuple[float, float]:
