@@ -25,8 +25,7 @@ rest are exact at the nodes, even where the circle is smaller than a spacing.
 import math
 
 from impactlab.solver.beam import SYMMETRIC, BeamGrid, BeamState, mirror
-from impactlab.solver.contact.history import Pair, yield_stress
-from impactlab.solver.contact.switch import radius
+from impactlab.solver.contact.history import Pair, pair_radius, yield_stress
 from impactlab.solver.jit import compiled
 from impactlab.solver.types import Record
 
@@ -34,8 +33,7 @@ from impactlab.solver.types import Record
 @compiled
 def contact_radius(contact: Record, pair: Pair, F: float) -> float:
     """Return the radius (m) of the circle of contact under the force F (N), damping apart."""
-    S_y = yield_stress(contact, pair)
-    a = radius(pair.law, contact.delta_m, pair.E, pair.R, S_y, pair.nu)
+    a = pair_radius(pair, contact.delta_m, yield_stress(contact, pair))
     return float(a * min((F - contact.damping) / contact.F_m, 1.0) ** (1.0 / 3.0))
 
 

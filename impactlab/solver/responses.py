@@ -23,7 +23,7 @@ from impactlab.solver.contact.finite_element import (
     LEAST_POISSONS_RATIO,
     LEAST_STIFFNESS,
 )
-from impactlab.solver.contact.history import Pair, energies, yield_stress
+from impactlab.solver.contact.history import Pair, energies, pair_radius, yield_stress
 from impactlab.solver.contact.metals import (
     LARGEST_COMPARED_REVERSAL,
     LARGEST_HARDENED,
@@ -33,7 +33,7 @@ from impactlab.solver.contact.metals import (
     reversal,
 )
 from impactlab.solver.contact.stronge import yield_indentation
-from impactlab.solver.contact.switch import is_damped, limit, radius
+from impactlab.solver.contact.switch import is_damped, limit
 from impactlab.solver.event_tracker import largest_load
 from impactlab.solver.jit import compiled
 from impactlab.solver.outputs import (
@@ -169,7 +169,7 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
 @compiled
 def read_size(answer: Record, case: Record, contact: Record, pair: Pair) -> None:
     """Remark a contact that is not small beside the beam's section."""
-    a = radius(pair.law, contact.delta_m, pair.E, pair.R, yield_stress(contact, pair), pair.nu)
+    a = pair_radius(pair, contact.delta_m, yield_stress(contact, pair))
     deep = case.beam_depth >= case.beam_width
     across = LARGEST_CIRCLE_BETWEEN if deep else LARGEST_CIRCLE_ACROSS
     largest = min(LARGEST_CIRCLE * case.beam_depth, across * case.beam_width)
@@ -247,8 +247,7 @@ def read_strike(
 def read_skin(answer: Record, thickness: float, contact: Record, pair: Pair) -> None:
     """Remark a contact that is not small beside the outer layer; thickness: its (m), 0: none."""
     if thickness > 0.0:
-        S_y = yield_stress(contact, pair)
-        a = radius(pair.law, contact.delta_m, pair.E, pair.R, S_y, pair.nu)
+        a = pair_radius(pair, contact.delta_m, yield_stress(contact, pair))
         if a > LARGEST_CIRCLE_ON_SKIN * thickness:
             answer.remarks |= SKIN_MAY_GIVE
 

@@ -36,10 +36,17 @@ of the mass, which is central, and that of modes (resisted_modes.py) change noth
 import math
 
 from impactlab.solver.beam import PINNED, SPRUNG, BeamGrid, half_spacings, make_grid
-from impactlab.solver.contact.history import PANELS, Pair, loading_work, make_pair, pair_curve
+from impactlab.solver.contact.history import (
+    PANELS,
+    Pair,
+    loading_work,
+    make_pair,
+    pair_curve,
+    pair_radius,
+)
 from impactlab.solver.contact.rate import MODULUS, STRAIN
 from impactlab.solver.contact.stronge import yield_indentation
-from impactlab.solver.contact.switch import damping, is_damped, radius
+from impactlab.solver.contact.switch import damping, is_damped
 from impactlab.solver.jit import compiled
 from impactlab.solver.lumped import mid_span
 from impactlab.solver.responses import LARGEST_COMPLIANCE
@@ -80,8 +87,8 @@ def _stiffness(pair: Pair, delta: float) -> tuple[float, float]:
         little = _SMALL * pair.S_y
         harder, _, _, _ = pair_curve(pair, delta, pair.S_y + little)
         softer, _, _, _ = pair_curve(pair, delta, pair.S_y - little)
-        a = radius(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
-        wider = radius(pair.law, delta + small, pair.E, pair.R, pair.S_y, pair.nu)
+        a = pair_radius(pair, delta, pair.S_y)
+        wider = pair_radius(pair, delta + small, pair.S_y)
         growth = MODULUS * STRAIN * pair.E * (wider - a) / (pair.R * small)
         loading += growth * min(harder - F, F - softer) / little
     turning = 10.0 * (F - start) ** 2 / (_LARGEST_SHARE * F * delta)

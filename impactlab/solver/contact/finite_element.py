@@ -69,6 +69,8 @@ up to 0.68 of half the width, but where the metal hardens dents are 5 % too deep
 
 FULLY_PLASTIC = 2.5
 """Largest a^2/(R delta): the mean of the data without hardening from 2,000 to 5,000 delta_y."""
+HALF_SUNK_IN = 1.1
+"""q sqrt(x) at which half of what hardening takes off a^2 is off; fitted to the data."""
 LARGEST_FORCE = 0.5
 """Contact force over yield stress times section, for the corrections, of beams at least half as
 deep as wide: on soft ones (E*/S_y above 700) it is 5 % too large at 0.6."""
@@ -78,9 +80,10 @@ recovered by its share in the dent."""
 
 
 @compiled
-def _circle(log: float) -> float:
-    """Return a^2/(R delta) of the contact circle, for log(delta/delta_y)."""
-    return min(1.0 + 0.04 * log * log, FULLY_PLASTIC)
+def _circle(log: float, w: float, hard: float, shape: Shape) -> float:
+    """Return a^2/(R delta) of the contact circle, for log = ln x and hard = q sqrt(x)."""
+    circle = min(1.0 + 0.04 * log * log, FULLY_PLASTIC)
+    return circle * (1.0 - shape[28] * hard * w / (HALF_SUNK_IN + hard))
 
 
 @compiled
@@ -138,7 +141,7 @@ def curve(
     )
     recovered *= math.sqrt(s)
     if crowding > 0.0:
-        circle = crowding * R * min(delta, end) * _circle(log)
+        circle = crowding * R * min(delta, end) * _circle(log, w, shape[25] * s, shape)
         share = 1.0 / (1.0 + _crowded(circle, ww))
         F, recovered = F * share, recovered * math.sqrt(share)
     if delta > end:
@@ -147,7 +150,7 @@ def curve(
 
 
 @compiled
-def sideways(delta: float, E: float, R: float, S_y: float, crowding: float) -> float:
+def sideways(delta: float, E: float, R: float, S_y: float, shape: Shape, crowding: float) -> float:
     """Return the share of a half-space's force that the faces of a beam take off.
 
     crowding: c (1/m2).
@@ -158,7 +161,8 @@ def sideways(delta: float, E: float, R: float, S_y: float, crowding: float) -> f
     reached = min(delta, max(LARGEST_DEPTH * R, delta_y))
     x = reached / delta_y
     log, w = math.log(x), 1.0 - 1.0 / math.sqrt(x)
-    crowded = _crowded(crowding * R * reached * _circle(log), w * w)
+    circle = _circle(log, w, shape[25] * math.sqrt(x), shape)
+    crowded = _crowded(crowding * R * reached * circle, w * w)
     return crowded / (1.0 + crowded)
 
 
@@ -174,7 +178,11 @@ def limit(E: float, R: float, S_y: float, nu: float) -> float:
 
 
 @compiled
-def radius(delta: float, E: float, R: float, S_y: float, nu: float) -> float:
+def radius(
+    delta: float, E: float, R: float, S_y: float, nu: float, shape: Shape = LIKE_METALS
+) -> float:
     """Return the radius (m) of the contact circle, fitted to within half an element."""
-    log = math.log(max(delta / yield_indentation(E, R, S_y), 1.0))
-    return math.sqrt(R * delta * _circle(log))
+    x = max(delta / yield_indentation(E, R, S_y), 1.0)
+    root = math.sqrt(x)
+    circle = _circle(math.log(x), 1.0 - 1.0 / root, shape[25] * root, shape)
+    return math.sqrt(R * delta * circle)

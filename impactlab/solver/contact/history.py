@@ -22,7 +22,7 @@ import numpy as np
 
 from impactlab.solver.contact import LAWS, finite_element
 from impactlab.solver.contact.metals import LIKE_METALS, shape
-from impactlab.solver.contact.switch import curve
+from impactlab.solver.contact.switch import curve, radius
 from impactlab.solver.jit import compiled, inlined
 from impactlab.solver.strain_rate import RateLaw, rate_law
 from impactlab.solver.types import Record, Shape, Unloading, record
@@ -137,12 +137,24 @@ def pair_curve(pair: Pair, delta: float, S_y: float) -> Unloading:
 
 
 @compiled
+def pair_radius(pair: Pair, delta: float, S_y: float) -> float:
+    """Return the radius (m) of the circle of contact by these bodies' law.
+
+    S_y: the yield stress (Pa) at the contact's strain rate.
+    """
+    if pair.law == _OF_METALS:
+        return float(finite_element.radius(delta, pair.E, pair.R, S_y, pair.nu, pair.shape))
+    return float(radius(pair.law, delta, pair.E, pair.R, S_y, pair.nu))
+
+
+@compiled
 def sideways(contact: Record, pair: Pair) -> float:
     """Return the share of the contact's force that the faces of a beam take off."""
     if pair.crowding == 0.0 or pair.law != _OF_METALS:
         return 0.0
     S_y = yield_stress(contact, pair)
-    return float(finite_element.sideways(contact.delta_m, pair.E, pair.R, S_y, pair.crowding))
+    share = finite_element.sideways(contact.delta_m, pair.E, pair.R, S_y, pair.shape, pair.crowding)
+    return float(share)
 
 
 @compiled

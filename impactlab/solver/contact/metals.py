@@ -43,6 +43,9 @@ REVERSED_RECOVERY, REVERSED_EXPONENT = 0.375, 0.75
 LARGEST_HARDENED = 2.0
 """Hardened flow stress under the contact over the other body's yield stress, beyond which runs are
 marked: that body then yields more than in the data; at 4.2 the force is 8 % too large."""
+SUNK_IN = 0.47, 1.5
+"""Share that hardening takes off a^2/(R delta) in the end, for metal that hardens sinks in around a
+contact, and how that falls with t: of two bodies that yield it presses the other one flat."""
 ONSET, ONSET_EXPONENT = 0.36, -0.074
 """First-order parts of what is recovered and of the exponent in w (finite_element.py): no metal
 creates energy if the first is below 0.5 plus 0.4 times the second."""
@@ -131,7 +134,7 @@ def shape(
     kinematic: float,
     hardness: float,
 ) -> Shape:
-    """Return the coefficients of the curve of two metals, q, and of z (reversal).
+    """Return the coefficients of the curve of two metals, q, and those of z and of the circle.
 
     yield_ratio: E*/S_y of the softer metal; share: of the compliance 1/E* that is its own; nu: its
     Poisson's ratio; hardening: its hardening moduli over Young's; kinematic: share of the latter;
@@ -179,6 +182,7 @@ def shape(
         q,
         k * q * (1.0 + REVERSED[0] * u + REVERSED[1] * v) * max(1.0 - REVERSED[2] * t, 0.0),
         REVERSED[3] * (1.0 - k) * q,
+        SUNK_IN[0] * max(1.0 - SUNK_IN[1] * t, 0.0),
     )
 
 
@@ -195,6 +199,6 @@ LIKE_METALS: Shape = (
     *PLAIN[:, 0].tolist(),
     *(STRAIN[:, 0] + STRAIN[:, 1] * 100.0 / 333.0).tolist(),
     *HARDENING[:, 0].tolist(),
-    *(0.0, 0.0, 0.0),
+    *(0.0, 0.0, 0.0, 0.0),
 )
 """Of a flat and an elastic sphere of the same modulus, E*/S_y = 333, which do not harden."""

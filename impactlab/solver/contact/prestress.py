@@ -39,12 +39,12 @@ from impactlab.solver.contact.history import (
     Pair,
     bracketed,
     load,
+    pair_radius,
     recovered,
     sideways,
     yield_stress,
 )
 from impactlab.solver.contact.stronge import yield_indentation
-from impactlab.solver.contact.switch import radius
 from impactlab.solver.jit import compiled
 from impactlab.solver.types import Record
 
@@ -72,7 +72,7 @@ def _yields(contact: Record, pair: Pair) -> tuple[float, float]:
     """Return the force (N) and the approach (m) at which the contact yields on."""
     depth, along, across = pair.prestress
     S_y = yield_stress(contact, pair)
-    a = radius(pair.law, contact.delta_m, pair.E, pair.R, S_y, pair.nu)
+    a = pair_radius(pair, contact.delta_m, S_y)
     left = max(1.0 - a / depth, 0.0)
     s_x = (along * contact.F_m - left * contact.stress_along) / S_y
     s_y = (across * contact.F_m - left * contact.stress_across) / S_y

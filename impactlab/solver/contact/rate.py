@@ -16,10 +16,9 @@ at one rate per impact is right in either the largest force or the indentation, 
 
 import math
 
-from impactlab.solver.contact.history import Pair, load
+from impactlab.solver.contact.history import Pair, load, pair_radius
 from impactlab.solver.contact.prestress import complementary
 from impactlab.solver.contact.stronge import MEAN_PRESSURE
-from impactlab.solver.contact.switch import radius
 from impactlab.solver.jit import compiled
 from impactlab.solver.strain_rate import overstress
 from impactlab.solver.types import Record, Unloading
@@ -39,8 +38,8 @@ def strain(contact: Record, pair: Pair, approach: float, dt: float) -> None:
     if contact.delta_m == 0.0:
         load(contact, pair, _TOUCH * approach)
     delta = contact.delta_m + approach - contact.approach_m
-    before = radius(pair.law, contact.delta_m, pair.E, pair.R, pair.S_y, pair.nu)
-    after = radius(pair.law, delta, pair.E, pair.R, pair.S_y, pair.nu)
+    before = pair_radius(pair, contact.delta_m, pair.S_y)
+    after = pair_radius(pair, delta, pair.S_y)
     modulus = MODULUS * pair.E
     trial = contact.stress + modulus * STRAIN * (after - before) / pair.R
     if trial > pair.S_y * (1.0 + _ROUND_OFF):

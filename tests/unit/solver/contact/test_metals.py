@@ -20,6 +20,7 @@ DATA["bias"] = 0.004 * (20 / DATA.elements) ** 2
 """Share by which the mesh makes the force too small (contact_law.py)."""
 SOFT = DATA[DATA.run.between(204, 227)]
 curve = getattr(finite_element.curve, "py_func", finite_element.curve)
+radius = getattr(finite_element.radius, "py_func", finite_element.radius)
 shape = getattr(metals.shape, "py_func", metals.shape)
 
 
@@ -76,6 +77,24 @@ def test_force_and_unloading_are_those_of_the_finite_elements():
     assert len(ends) > 100
     assert abs(np.mean(ends)) < 0.002
     assert np.sqrt(np.mean(np.square(ends))) < 0.005
+
+
+def test_contact_circles_are_those_of_the_finite_elements():
+    """Metal sinks in the more around a circle, the more it hardens."""
+    missed, hard = [], []
+    for _, run in DATA.groupby("run"):
+        S_y, of = E / run.E_over_S.iloc[0], shape_of(run.iloc[0])
+        delta_y = yield_indentation(E, R, S_y)
+        element = run.a_over_R.max() / run.elements.iloc[0]
+        inside = (run.a_over_R > 8 * element) & (run.x * delta_y < finite_element.LARGEST_DEPTH * R)
+        for x, a in run[inside & (run.x == run.x_max)][["x", "a_over_R"]].to_numpy()[::3]:
+            ours = radius(x * delta_y, E, R, S_y, NU, of) / R
+            missed.append(np.log(ours / (a + 0.3 * element)))  # as in the mean of Hertz
+            hard.append(of[25] * np.sqrt(x))
+    missed, group = np.array(missed), np.digitize(hard, [0.1, 0.3, 0.6, 1.0])
+    assert np.bincount(group).min() > 50
+    assert np.sqrt(np.mean(missed**2)) < 0.05
+    assert abs(np.bincount(group, missed) / np.bincount(group)).max() < 0.03
 
 
 def test_dents_of_metals_that_yield_in_reverse_are_those_of_the_finite_elements():
