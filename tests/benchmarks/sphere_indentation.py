@@ -429,7 +429,7 @@ def run(args: argparse.Namespace) -> None:
             loaded = [(body.u, body.state) for body in solve.bodies], solve.force, solve.delta
             F_m, depth, step = solve.force.sum(), x, 0.0
             step = 0.1 * F_m / (2.0 * args.modulus * math.sqrt(x * solve.delta_y)) / solve.delta_y
-            while note(depth := depth - min(step, 0.9 * depth), f"{x:.6g}") > 0.03 * F_m:
+            while note(depth := depth - min(step, 0.9 * depth), f"{x:.6g}") > args.last * F_m:
                 left, fell = float(rows[-1][-2]), float(rows[-2][-2]) - float(rows[-1][-2])
                 step *= min(0.15 * F_m / solve.F_y, 0.45 * left) / fell
             states, solve.force, solve.delta = loaded
@@ -461,6 +461,7 @@ if __name__ == "__main__":
     parser.add_argument("--round", action="store_true", help="a sphere that yields is round")
     parser.add_argument("--depth", type=float, required=True, help="largest delta/delta_y")
     parser.add_argument("--unload", type=float, nargs="*", help="unload from these, too")
+    parser.add_argument("--last", type=float, default=0.03, help="force of unloading, over largest")
     parser.add_argument("--elements", type=int, default=60, help="over the largest radius")
     parser.add_argument("--stress", type=float, default=0.0, help="along the surface, over S_y")
     parser.add_argument("--steps", type=int, default=200, help="of loading")
