@@ -12,8 +12,8 @@ PLAIN: of 13 functions of x = delta/delta_y; STRAIN: of three that finite strain
 nine that grow with q sqrt(x), q = H (1 - nu^2)/(E share), H its hardening modulus. Unloading yields
 in reverse where
     z = w^2 k q sqrt(x) (1 + 0.57 u - 0.28 v) max(1 - 1.25 t, 0)/(1 + 1.3 (1 - k) q sqrt(x))
-is above 0.32: what it recovers is then longer by 0.375 (z - 0.32) of itself and its exponent
-larger by 0.8 (z - 0.32).
+is above 0.32, w = 1 - 1/sqrt(x): what it recovers is then longer by 0.375 (z - 0.32) of itself and
+its exponent larger by 0.8 (z - 0.32).
 
 Fitted by tests/benchmarks/contact_law.py, which says to what, and writes them here. Beyond the
 data the numbers are held at their ends.
