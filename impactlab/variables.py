@@ -125,7 +125,7 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "shallow_dent": (
         outputs.SHALLOW_DENT,
-        "the dent is below 0.2 of the indentation and may be off by 6 %",
+        "the dent is below 0.2 of the indentation and may be off by 7 %",
     ),
     "struck_near_end": (
         outputs.STRUCK_NEAR_END,

@@ -75,7 +75,7 @@ LARGEST_FORCE = 0.5
 """Contact force over yield stress times section, for the corrections, of beams at least half as
 deep as wide: on soft ones (E*/S_y above 700) it is 5 % too large at 0.6."""
 LEAST_DENT = 0.2
-"""Dent over indentation: shallower ones are up to 6 % too deep, for the fit weighs what is
+"""Dent over indentation: shallower ones are up to 7 % too deep, for the fit weighs what is
 recovered by its share in the dent."""
 
 
