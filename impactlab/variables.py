@@ -115,9 +115,8 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "contact_circle_outside_data": (
         outputs.CONTACT_CIRCLE_OUTSIDE_DATA,
-        "the contact radius is above 0.62 of half the beam's depth, or above 0.45 of half its "
-        "width, or 0.3 where H >= B: forces and indentations may be off by 10 %, and by 30 % where "
-        "it is nearly the depth",
+        "the contact radius is above 0.62 of half the beam's depth or 0.42 of half its width: "
+        "forces and indentations may be off by 10 %, and by 30 % where it is nearly the depth",
     ),
     "contact_force_outside_data": (
         outputs.CONTACT_FORCE_OUTSIDE_DATA,
@@ -125,7 +124,7 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "shallow_dent": (
         outputs.SHALLOW_DENT,
-        "the dent is below 0.2 of the indentation and may be off by 7 %",
+        "the dent is below 0.22 of the indentation and may be off by 7 %",
     ),
     "struck_near_end": (
         outputs.STRUCK_NEAR_END,

@@ -13,7 +13,6 @@ from impactlab.solver.contact import LAWS
 from impactlab.solver.contact.finite_element import (
     LARGEST_CIRCLE,
     LARGEST_CIRCLE_ACROSS,
-    LARGEST_CIRCLE_BETWEEN,
     LARGEST_FORCE,
     LARGEST_HARDENING,
     LARGEST_POISSONS_RATIO,
@@ -71,7 +70,7 @@ from impactlab.solver.types import (
 
 PLASTIC_ZONE_STRAIN = 1e-5
 """PEEQ from which on a section counts as plastic."""
-LARGEST_COMPLIANCE = 0.5
+LARGEST_COMPLIANCE = 0.45
 """Of the contact, over that of its law, taken back by the bodies' ends: beyond it the circle is not
 small beside them."""
 LARGEST_CIRCLE_ON_SKIN = 0.2
@@ -170,9 +169,7 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
 def read_size(answer: Record, case: Record, contact: Record, pair: Pair) -> None:
     """Remark a contact that is not small beside the beam's section."""
     a = pair_radius(pair, contact.delta_m, yield_stress(contact, pair))
-    deep = case.beam_depth >= case.beam_width
-    across = LARGEST_CIRCLE_BETWEEN if deep else LARGEST_CIRCLE_ACROSS
-    largest = min(LARGEST_CIRCLE * case.beam_depth, across * case.beam_width)
+    largest = min(LARGEST_CIRCLE * case.beam_depth, LARGEST_CIRCLE_ACROSS * case.beam_width)
     if a > 0.5 * largest:
         answer.remarks |= CONTACT_CIRCLE_OUTSIDE_DATA
     yields = case.beam_yield_stress * case.beam_width * case.beam_depth

@@ -3,11 +3,11 @@
 python tests/benchmarks/large_contacts.py
 
 large_contacts.csv has the impacts, of steel, and the 3-D answers. CROWDING of
-model/contact_compliance.py, its exponent and the share of it in unloading were fitted to the narrow
-beams (use: crowding), peak and indentation alike, SHARED of solver/contact/prestress.py and of
-solver/kink.py likewise; CROWDING_IN_DEPTH, with the numbers of solver/punching.py, to the wider
-ones (punching). The others (after) were solved when all numbers were fixed, and are reported
-whatever they show.
+model/contact_compliance.py was fitted to the narrow beams (use: crowding) and those of metals.py,
+peak and indentation alike, SHARED of solver/contact/prestress.py and of solver/kink.py likewise;
+CROWDING_IN_DEPTH, with the numbers of solver/punching.py, to the wider ones (punching). The others
+(after) were solved when all numbers but those of the crowding were fixed, and are reported whatever
+they show.
 
 Most answers are of meshes with 9 and 9.5 elements over the radius that is expected of the contact;
 those of 6 to 7.5 have up to 2 % more force. Of some of the narrow beams they are the means of 5,

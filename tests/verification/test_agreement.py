@@ -24,9 +24,23 @@ TARGET = {
     "force_history": 5.0,
 }
 """Largest difference from 3-D in %."""
-EXCEPTIONS = {("design 33", "permanent_indentation"): 4.0}
-"""Misses without a mark, and their limits in %: a dent in a deep beam, which still bends where its
-3-D run ends."""
+EXCEPTIONS = {
+    ("design 33", "permanent_indentation"): 3.5,
+    ("design 79", "permanent_indentation"): 3.5,
+    ("narrow 11", "contact_duration"): 3.5,
+    ("narrow 26", "peak_force"): 2.2,
+    ("narrow 37", "permanent_indentation"): 6.0,
+    ("narrow 63", "contact_duration"): 2.2,
+}
+"""Misses without a mark, and their limits in %. Where the dents are the beam still bends at the end
+of its 3-D run."""
+LARGEST_ERRORS = {
+    "peak_force": 0.82,
+    "contact_duration": 1.0,
+    "maximum_indentation": 0.6,
+    "permanent_indentation": 1.5,
+}
+"""Root mean squares of narrow beams' differences from 3-D, in %."""
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +52,7 @@ def metals():
 
 def test_cases_have_the_marks_of_the_table(metals):
     grid = il.Discretisation(nodes=101)
-    for name, impact in (*metals.chosen(), *metals.designed()):
+    for name, impact in (*metals.chosen(), *metals.designed(), *metals.narrow()):
         run = il.simulate(impact, grid, duration=2e-3)
         marks = metals.marks(run)
         if name in TABLE.index:
@@ -66,3 +80,18 @@ def test_cases_without_a_mark_meet_the_target():
     assert misses == EXCEPTIONS.keys()
     for case, response in misses:
         assert abs(TABLE.loc[case, response]) < EXCEPTIONS[case, response]
+
+
+def test_narrow_beams_of_any_metal_are_as_in_3d(metals):
+    """Without any part of what their sides do to the contact one of the errors is larger."""
+    grid, responses = il.Discretisation(nodes=101), list(LARGEST_ERRORS)
+    differences = {}
+    for name, impact in metals.narrow():
+        answers = metals.NARROW.loc[name]
+        run = il.simulate(impact, grid, duration=1.1 * answers.contact_duration)
+        if not metals.marks(run):
+            differences[name] = run[responses].to_array("response").to_series() / answers[responses]
+    errors = 100.0 * (pd.DataFrame(differences).T - 1.0)
+    assert len(errors) > 40
+    for response, limit in LARGEST_ERRORS.items():
+        assert (errors[response] ** 2).mean() ** 0.5 < limit, response

@@ -134,7 +134,7 @@ def shape(
     kinematic: float,
     hardness: float,
 ) -> Shape:
-    """Return the coefficients of the curve of two metals, q, and those of z and of the circle.
+    """Return the coefficients of the curve of two metals, q, those of z and circle, and S/S_other.
 
     yield_ratio: E*/S_y of the softer metal; share: of the compliance 1/E* that is its own; nu: its
     Poisson's ratio; hardening: its hardening moduli over Young's; kinematic: share of the latter;
@@ -183,6 +183,7 @@ def shape(
         k * q * (1.0 + REVERSED[0] * u + REVERSED[1] * v) * max(1.0 - REVERSED[2] * t, 0.0),
         REVERSED[3] * (1.0 - k) * q,
         SUNK_IN[0] * max(1.0 - SUNK_IN[1] * t, 0.0),
+        1.0 / hardness,
     )
 
 
@@ -200,6 +201,6 @@ LIKE_METALS: Shape = (
     *PLAIN[:, 0].tolist(),
     *(STRAIN[:, 0] + STRAIN[:, 1] * 100.0 / 333.0).tolist(),
     *HARDENING[:, 0].tolist(),
-    *(0.0, 0.0, 0.0, 0.0),
+    *(0.0, 0.0, 0.0, 0.0, 0.0),
 )
 """Of a flat and an elastic sphere of the same modulus, E*/S_y = 333, which do not harden."""

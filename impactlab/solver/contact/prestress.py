@@ -49,7 +49,7 @@ from impactlab.solver.jit import compiled
 from impactlab.solver.types import Record
 
 K_0, K_1, B, C = 0.39, 0.0008, 0.085, 0.23
-SHARED = 0.17
+SHARED = 0.12
 LARGEST = 320.0
 """x at which the data end."""
 _ITERATIONS, _ROUNDING, _TOUCH, _LEAST = 60, 1e-14, 1e-6, 0.1
