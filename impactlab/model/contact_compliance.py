@@ -133,9 +133,9 @@ STRESS_ACROSS = np.array(
 """Stress across the beam, likewise."""
 SPHERE = (0.0158, -0.2795, -0.3359)
 """c_s = c E R at these ratios."""
-CROWDING, CROWDING_IN_DEPTH = 1.2, 0.36
-"""Parts of c, times the squares of half the width and depth: of the sides, on a beam at least as
-deep as wide, and of the depth, on one at least twice as wide as deep."""
+CROWDING, CROWDING_IN_DEPTH = 1.2, 0.18
+"""c times the square of half the width, of a beam at least as deep as wide, and of half the depth,
+of one at least twice as wide as deep."""
 FREE_STRIP = 720.0 / 4.730041**4
 """Inertia of the shape y^2 - B^2/12 that swings as fast as a strip of plate with free edges."""
 STRIP_STIFFNESS = np.array(
@@ -202,13 +202,13 @@ def case_fields(impact: Impact) -> dict[str, Floats]:
     """
     local = "compliance", "bending_compliance", "axis_compliance", "axis_bending"
     across = "width_stiffness", "width_inertia", "width_lever", "width_twist"
-    stress = "stress_along", "stress_across"
-    fields: dict[str, Floats] = dict.fromkeys((*local, *across, *stress, "crowding"), np.zeros(()))
+    stress, crowded = ("stress_along", "stress_across"), ("crowding", "crowding_in_depth")
+    fields: dict[str, Floats] = dict.fromkeys((*local, *across, *stress, *crowded), np.zeros(()))
     if np.any(np.not_equal(impact.contact_compliance, "half_space")):
         values = *contact_compliance(impact), *axis_compliance(impact)
         fields |= zip(local, values, strict=True)
         fields |= zip(across, bending_across(impact)[:4], strict=True)
-        fields["crowding"] = crowding(impact)
+        fields |= zip(crowded, crowding(impact), strict=True)
     if np.any(np.not_equal(impact.contact_prestress, "ignored")):
         fields |= zip(stress, contact_stress(impact), strict=True)
     return fields
@@ -246,16 +246,19 @@ def contact_compliance(impact: Impact) -> tuple[Floats, Floats]:
     return np.where(applies, c, 0.0), np.where(applies, gamma, 0.0)
 
 
-def crowding(impact: Impact) -> Floats:
-    """Return c of contact/finite_element.py (1/m2) of an impact, or of many; zero for half-spaces.
+def crowding(impact: Impact) -> tuple[Floats, Floats]:
+    """Return c and d of contact/finite_element.py (1/m2) of an impact, or of many.
 
-    Of the width's part a beam twice as wide as deep has nothing; one as deep as wide has all of it
-    and half of the depth's. Fitted to 3-D runs (tests/benchmarks/large_contacts.py, metals.py).
+    Zero for half-spaces. A beam at least as deep as wide has c alone, one at least twice as wide as
+    deep d alone, and in between what both do counts in proportion. Fitted to 3-D runs
+    (tests/benchmarks/large_contacts.py, metals.py).
     """
     width, depth = np.asarray(impact.beam.width), np.asarray(impact.beam.depth)
     share = np.clip(2.0 * depth / width - 1.0, 0.0, 1.0)
-    c = CROWDING * share / width**2 + CROWDING_IN_DEPTH * (1.0 - 0.5 * share) / depth**2
-    return np.where(np.not_equal(impact.contact_compliance, "half_space"), 4.0 * c, 0.0)
+    applies = 4.0 * np.not_equal(impact.contact_compliance, "half_space")
+    in_depth = CROWDING_IN_DEPTH / depth**2
+    c = share ** (2.0 / 3.0) * (CROWDING / width**2 + in_depth)
+    return applies * c, applies * (1.0 - share) ** 0.8 * in_depth
 
 
 def axis_compliance(impact: Impact) -> tuple[Floats, Floats]:

@@ -18,6 +18,8 @@ index might be negative, that is, count from the end."""
 Unloading = tuple[float, float, float, float]
 """What a contact law's `curve` gives: see contact/hertz.py."""
 Shape = tuple[float, ...]
+Crowding = tuple[float, float]
+HALF_SPACE: Crowding = (0.0, 0.0)
 """What a law's `shape` makes of the two metals, for its `curve`: see contact/metals.py."""
 
 ELASTIC = BEAM_MODELS.index("elastic")
@@ -59,7 +61,7 @@ CASE = record(
     strike_position strike_interval
     stiffness_left stiffness_right rotational_stiffness_left rotational_stiffness_right
     mass_damping stiffness_damping damping_ratio foundation_stiffness
-    compliance bending_compliance stress_along stress_across crowding
+    compliance bending_compliance stress_along stress_across crowding crowding_in_depth
     width_stiffness width_inertia width_lever width_twist axis_compliance axis_bending
     """,
     integers="contact beam_model load contact_prestress support_left support_right"

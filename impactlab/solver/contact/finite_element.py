@@ -16,9 +16,10 @@ reverse (metals.py). tests/benchmarks/contact_law.py fits them
 and prints how well.
 
 Between the faces of a beam metal flows more easily than in a half-space, with the contact radius a
-and the beam's crowding c (0: a half-space)
-    F -> g F, 1/g = 1 + w^3 min(c a^2, 1)^1.5/(1 + 0.4 r^4)
-what unloading recovers -> its g^0.25, and n -> max(1, g^0.5 n). model/contact_compliance.py has c.
+and the beam's crowding by its sides, c, and in its depth, d (0: a half-space)
+    F -> g F, 1/g = 1 + (w^3 min(c a^2, 1)^1.5 + w^2 min(d a^2, 1)^1.25)/(1 + 0.4 r^4)
+what unloading recovers -> its g^0.25, and n -> max(1, g^0.5 n). model/contact_compliance.py has c
+and d.
 r, the beam's hardened flow stress over the sphere's yield stress, counts because a sphere that
 flows has no sides. `sideways` is the share of the force that this takes off.
 """
@@ -43,7 +44,7 @@ from impactlab.solver.contact.metals import (
 )
 from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.jit import compiled
-from impactlab.solver.types import Shape, Unloading
+from impactlab.solver.types import HALF_SPACE, Crowding, Shape, Unloading
 
 __all__ = [
     "LARGEST_HARDENING",
@@ -90,10 +91,12 @@ def _circle(log: float, w: float, hard: float, shape: Shape) -> float:
 
 
 @compiled
-def _crowded(crowding: float, area: float, x: float, w: float, shape: Shape) -> float:
+def _crowded(crowding: Crowding, area: float, x: float, w: float, shape: Shape) -> float:
     """Return 1/g - 1; area: a^2 (m2)."""
-    circle, r = min(crowding * area, 1.0), shape[29] * hardened(shape[25], x)
-    return float(w**3 * circle * math.sqrt(circle) / (1.0 + SPHERE_FLOWS * r**4))
+    sides, depth = min(crowding[0] * area, 1.0), min(crowding[1] * area, 1.0)
+    by_sides, in_depth = sides * math.sqrt(sides), depth * math.sqrt(math.sqrt(depth))
+    r = shape[29] * hardened(shape[25], x)
+    return float(w * w * (w * by_sides + in_depth) / (1.0 + SPHERE_FLOWS * r**4))
 
 
 @compiled
@@ -104,11 +107,11 @@ def curve(
     S_y: float,
     nu: float,
     shape: Shape = LIKE_METALS,
-    crowding: float = 0.0,
+    crowding: Crowding = HALF_SPACE,
 ) -> Unloading:
     """Return force and unloading curve of the fit (see contact/hertz.py for the form).
 
-    crowding: c (1/m2). Beyond the data the force grows with the indentation, and the unloading
+    crowding: c and d (1/m2). Beyond the data the force grows with the indentation, and unloading
     keeps its shape.
     """
     K = 4.0 / 3.0 * E * math.sqrt(R)
@@ -143,7 +146,7 @@ def curve(
         delta_y * s * bent * share,
     )
     recovered *= math.sqrt(s)
-    if crowding > 0.0:
+    if max(crowding) > 0.0:
         area = R * min(delta, end) * _circle(log, w, shape[25] * s, shape)
         share = 1.0 / (1.0 + _crowded(crowding, area, x, w, shape))
         root = math.sqrt(share)
@@ -154,13 +157,15 @@ def curve(
 
 
 @compiled
-def sideways(delta: float, E: float, R: float, S_y: float, shape: Shape, crowding: float) -> float:
+def sideways(
+    delta: float, E: float, R: float, S_y: float, shape: Shape, crowding: Crowding
+) -> float:
     """Return the share of a half-space's force that the faces of a beam take off.
 
-    crowding: c (1/m2).
+    crowding: c and d (1/m2).
     """
     delta_y = yield_indentation(E, R, S_y)
-    if crowding <= 0.0 or delta <= delta_y:
+    if max(crowding) <= 0.0 or delta <= delta_y:
         return 0.0
     reached = min(delta, max(LARGEST_DEPTH * R, delta_y))
     x = reached / delta_y

@@ -25,7 +25,7 @@ from impactlab.solver.contact.metals import LIKE_METALS, shape
 from impactlab.solver.contact.switch import curve, radius
 from impactlab.solver.jit import compiled, inlined
 from impactlab.solver.strain_rate import RateLaw, rate_law
-from impactlab.solver.types import Record, Shape, Unloading, record
+from impactlab.solver.types import HALF_SPACE, Crowding, Record, Shape, Unloading, record
 
 _OF_METALS = LAWS.index("finite_element")
 """The law whose curve depends on more of the metals than the others'."""
@@ -53,7 +53,7 @@ class Pair(NamedTuple):
     bending: float = 0.0
     prestress: tuple[float, float, float] = (0.0, 0.0, 0.0)
     shape: Shape = LIKE_METALS
-    crowding: float = 0.0
+    crowding: Crowding = HALF_SPACE
     rate: RateLaw = RateLaw()
     hardest: float = np.inf
 
@@ -102,11 +102,11 @@ def make_pair(case: Record) -> Pair:
     kinematic = kinematic / hardening if hardening > 0.0 else 0.0
     hardening /= case.beam_youngs_modulus
     depth = case.beam_depth if case.contact_prestress > 0 else 0.0
-    crowding = case.crowding
+    crowding = case.crowding, case.crowding_in_depth
     if S_y > case.sphere_yield_stress:
         S_y, nu, depth = case.sphere_yield_stress, case.sphere_poissons_ratio, 0.0
         share, hardness, hardening = 1.0 - share, 1.0 / hardness, 0.0
-        crowding = 0.0
+        crowding = 0.0, 0.0
         rate = RateLaw(0.0, 0.0, 0.0)
     compliances = case.compliance, case.bending_compliance
     prestress = depth, case.stress_along, case.stress_across
@@ -150,7 +150,7 @@ def pair_radius(pair: Pair, delta: float, S_y: float) -> float:
 @compiled
 def sideways(contact: Record, pair: Pair) -> float:
     """Return the share of the contact's force that the faces of a beam take off."""
-    if pair.crowding == 0.0 or pair.law != _OF_METALS:
+    if max(pair.crowding) == 0.0 or pair.law != _OF_METALS:
         return 0.0
     S_y = yield_stress(contact, pair)
     share = finite_element.sideways(contact.delta_m, pair.E, pair.R, S_y, pair.shape, pair.crowding)

@@ -78,7 +78,7 @@ def _yields(contact: Record, pair: Pair) -> tuple[float, float]:
     s_y = (across * contact.F_m - left * contact.stress_across) / S_y
     x = contact.delta_m / yield_indentation(pair.E, pair.R, S_y)
     F = strengthening(x, s_x, s_y) * contact.F_m
-    if pair.crowding > 0.0:
+    if max(pair.crowding) > 0.0:
         bent = max(contact.stress_along / S_y, 0.0)
         F /= 1.0 + SHARED * bent * sideways(contact, pair)
     recovers = (F / contact.K) ** (1.0 / contact.n)

@@ -23,7 +23,7 @@ OF_SECTION = {
 DERIVED = (
     *("compliance", "bending_compliance", "axis_compliance", "axis_bending"),
     *("width_stiffness", "width_inertia", "width_lever", "width_twist"),
-    *("stress_along", "stress_across", "crowding", "skin_thickness"),
+    *("stress_along", "stress_across", "crowding", "crowding_in_depth", "skin_thickness"),
     *("axis_held_left", "axis_held_right", "further"),
 )
 

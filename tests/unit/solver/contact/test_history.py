@@ -139,4 +139,4 @@ def test_the_softer_body_yields(make_case, sphere, beam):
     pair = make_pair(case)
     assert pair.S_y == 300e6
     assert pair.nu == (0.25 if sphere < beam else 0.35)
-    assert (pair.crowding > 0.0) == (sphere > beam)  # a sphere has no sides
+    assert (max(pair.crowding) > 0.0) == (sphere > beam)  # a sphere has no sides

@@ -157,7 +157,7 @@ def metals_within_the_data(number):
         yield ratio, shape(ratio, share, 0.05 + 0.4 * u[2], hardening, u[6], hardness)
 
 
-@pytest.mark.parametrize("crowding", [0.0, 1e3, 1e5])
+@pytest.mark.parametrize("crowding", [(0.0, 0.0), (1e3, 0.0), (1e5, 0.0), (1e3, 1e5)])
 def test_no_metal_creates_energy(crowding):
     """Unloading gives back less than the work of loading; the dent is between 0 and delta."""
     for ratio, of in metals_within_the_data(256):
