@@ -156,7 +156,7 @@ def _designed(number: int, u: npt.NDArray[np.float64]) -> il.Impact:
         "youngs_modulus": E,
         "poissons_ratio": nu,
         "yield_stress": modulus / yield_ratio,
-        ("isotropic", "kinematic")[1 - number % 2] + "_hardening_modulus": hardening * E,
+        ("kinematic", "isotropic")[number % 2] + "_hardening_modulus": hardening * E,
     }
     sphere = {"youngs_modulus": ratio * E, "yield_stress": hardness * modulus / yield_ratio}
     sides = {"width": 30e-3 / section**0.5, "depth": 30e-3 * section**0.5}
