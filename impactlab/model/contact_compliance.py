@@ -257,6 +257,7 @@ def crowding(impact: Impact) -> tuple[Floats, Floats]:
     share = np.clip(2.0 * depth / width - 1.0, 0.0, 1.0)
     applies = 4.0 * np.not_equal(impact.contact_compliance, "half_space")
     in_depth = CROWDING_IN_DEPTH / depth**2
+    # the law's powers 1.5 and 1.25 make shares of these
     c = share ** (2.0 / 3.0) * (CROWDING / width**2 + in_depth)
     return applies * c, applies * (1.0 - share) ** 0.8 * in_depth
 

@@ -210,9 +210,9 @@ def row(name: str, impact: il.Impact, meshes: Sequence[float]) -> dict[str, obje
 def main(meshes: Sequence[float]) -> None:
     """Solve and tabulate."""
     rows = []
-    unmarked = dict([*designed()][DESIGNS[35] :])
+    later = dict([*designed()][DESIGNS[35] :])
     for name, impact in (*chosen(), *designed(), *narrow()):
-        if name in unmarked and marks(il.simulate(impact, GRID, duration=4e-3)):
+        if name in later and marks(il.simulate(impact, GRID, duration=4e-3)):
             continue
         sizes = NARROW_MESHES if name in NARROW.index else MESHES
         rows.append(row(name, impact, meshes or sizes))

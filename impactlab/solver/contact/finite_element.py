@@ -18,10 +18,9 @@ and prints how well.
 Between the faces of a beam metal flows more easily than in a half-space, with the contact radius a
 and the beam's crowding by its sides, c, and in its depth, d (0: a half-space)
     F -> g F, 1/g = 1 + (w^3 min(c a^2, 1)^1.5 + w^2 min(d a^2, 1)^1.25)/(1 + 0.4 r^4)
-what unloading recovers -> its g^0.25, and n -> max(1, g^0.5 n). model/contact_compliance.py has c
-and d.
-r, the beam's hardened flow stress over the sphere's yield stress, counts because a sphere that
-flows has no sides. `sideways` is the share of the force that this takes off.
+what unloading recovers -> g^0.25 of it, and n -> max(1, g^0.5 n). model/contact_compliance.py has
+c and d. r, the beam's hardened flow stress over the sphere's yield stress, counts because a sphere
+that flows has no sides. `sideways` is the share of the force that this takes off.
 """
 
 import math
