@@ -234,9 +234,10 @@ _REGISTRY = (
             "loading and unloading: tests/benchmarks/sphere_indentation.py and contact_law.py"
         ),
         holds_for=(
-            "indentation up to 0.024 of the sphere's radius (the data end at 0.045); E*/S_y from "
-            "60 to 1500; of the softer body, Poisson's ratio from 0.05 to 0.45, hardening up to "
-            "0.05 of Young's modulus, a third to ten times less stiff than the other"
+            "indentation up to 0.045 of the sphere's radius, or 0.024 where E*/S_y is above 505; "
+            "E*/S_y from 60 to 1500; of the softer body, Poisson's ratio from 0.05 to 0.45, "
+            "hardening up to 0.05 of Young's modulus, a third to ten times less stiff than the "
+            "other"
         ),
         yield_pressure=1.65,
     ),

@@ -12,14 +12,15 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 
+import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from impactlab.model.impact import Impact
 from impactlab.verification.solutions import hertz as hertz_forms
 
-LARGEST_DEPTH = 0.024
-"""d/R beyond which the force of `finite_element` is linear."""
+DEPTHS = ((400.0, 0.045), (505.0, 0.024))
+"""d/R beyond which the force of `finite_element` is linear at two E/S, interpolated between them."""
 TERMS = (
     (0.032851, 0.16033, -0.05834),
     (0.14274, -0.074368, 0.18104),
@@ -72,11 +73,16 @@ def finite_element(d: float, E: float, R: float, S: float, nu: float) -> float:
     """Return the fit to finite elements for two like metals: Hertz bent down; linear at the end."""
     if d <= R * (0.825 * math.pi * S / E) ** 2:
         return hertz(d, E, R, S, nu)
-    end = min(d, LARGEST_DEPTH * R)
+    end = min(d, _largest(E, R, S))
     w, root, terms, strain = _fit(end, E, R, S, nu)
     powers = (w**2, w**3, w**4, w**5, 2.0 * w**2 * math.log(root))
     exponent = math.fsum(map(math.prod, zip(terms[:5], powers, strict=True)))
     return hertz(end, E, R, S, nu) * math.exp(exponent + strain[0] * w * root) * d / end
+
+
+def _largest(E: float, R: float, S: float) -> float:
+    """Return the indentation at which the fit to finite elements ends."""
+    return float(np.interp(E / S, *zip(*DEPTHS, strict=True))) * R
 
 
 def _fit(
@@ -182,7 +188,7 @@ def finite_unloading(d: float, F: float, E: float, R: float, S: float, nu: float
     d_y = R * (0.825 * math.pi * S / E) ** 2
     if d <= d_y:
         return F, 0.0, 1.5
-    w, root, terms, strain = _fit(min(d, LARGEST_DEPTH * R), E, R, S, nu)
+    w, root, terms, strain = _fit(min(d, _largest(E, R, S)), E, R, S, nu)
     powers = (w**2, w**3, w**4, 2.0 * w**2 * math.log(root))
     shares, exponents = (
         math.fsum(map(math.prod, zip(terms[i : i + 4], powers, strict=True))) for i in (5, 9)
@@ -247,7 +253,8 @@ def joints(E: float, R: float, S: float, nu: float) -> list[float]:
         (jackson_c, (1.0, 1.9)),
         (kogut_c, (1.0, 6.0, 110.0)),
     )
-    return sorted([thornton_y, LARGEST_DEPTH * R, *(d * x for d, shares in steps for x in shares)])
+    ends = thornton_y, _largest(E, R, S)
+    return sorted([*ends, *(d * x for d, shares in steps for x in shares)])
 
 
 @dataclass(frozen=True)

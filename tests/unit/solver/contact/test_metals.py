@@ -14,9 +14,12 @@ from impactlab.solver.contact import finite_element, metals
 from impactlab.solver.contact.stronge import yield_indentation
 
 BENCHMARKS = Path(__file__).parents[3] / "benchmarks"
-DATA, REVERSAL = (pd.read_csv(BENCHMARKS / f"{name}.csv") for name in ("indentation", "reversal"))
+DATA, REVERSAL, DEEPER = (
+    pd.read_csv(BENCHMARKS / f"{name}.csv") for name in ("indentation", "reversal", "deeper")
+)
 E, R, NU = 115e9, 0.035, 0.3
-DATA["bias"] = 0.004 * (20 / DATA.elements) ** 2
+for data in (DATA, DEEPER):
+    data["bias"] = 0.004 * (20 / data.elements) ** 2
 """Share by which the mesh makes the force too small (contact_law.py)."""
 SOFT = DATA[DATA.run.between(204, 227)]
 curve = getattr(finite_element.curve, "py_func", finite_element.curve)
@@ -44,7 +47,7 @@ def test_force_and_unloading_are_those_of_the_finite_elements():
     for _, run in DATA.groupby("run"):
         S_y, of = E / run.E_over_S.iloc[0], shape_of(run.iloc[0])
         delta_y = yield_indentation(E, R, S_y)
-        run = run[run.x_max <= finite_element.LARGEST_DEPTH * R / delta_y]
+        run = run[run.x_max <= finite_element.limit(E, R, S_y, NU) / delta_y]
         F_y = 4.0 / 3.0 * E * np.sqrt(R) * delta_y**1.5
         tops = {x: curve(x * delta_y, E, R, S_y, NU, of) for x in run.x_max.unique()}
         loading = run[(run.x == run.x_max) & (run.x > 1.05)]
@@ -77,6 +80,29 @@ def test_force_and_unloading_are_those_of_the_finite_elements():
     assert len(ends) > 100
     assert abs(np.mean(ends)) < 0.002
     assert np.sqrt(np.mean(np.square(ends))) < 0.005
+
+
+def test_deep_indentations_solved_after_the_fit_are_as_it_has_them():
+    """Force from 0.024 R on, and where F^0.675 of the last three forces vanishes."""
+    forces, dents = [], []
+    for _, run in DEEPER[DEEPER.E_over_S <= 600].groupby("run"):
+        S_y, of = E / run.E_over_S.iloc[0], shape_of(run.iloc[0])
+        delta_y = yield_indentation(E, R, S_y)
+        run = run[run.x_max * delta_y <= 0.045 * R]
+        F_y = 4.0 / 3.0 * E * np.sqrt(R) * delta_y**1.5
+        loading = run[(run.x == run.x_max) & (run.x * delta_y > 0.024 * R)]
+        ours = np.array([curve(x * delta_y, E, R, S_y, NU, of)[0] / F_y for x in loading.x])
+        if len(loading):
+            forces.append(np.mean(np.log(ours / loading.F) - loading.bias))
+        for top, branch in run[run.x < run.x_max].groupby("x_max"):
+            if top * delta_y < 0.02 * R or metals.reversal(np.sqrt(top), of) > 0.45:
+                continue
+            last = branch.nsmallest(3, "F")
+            slope, start = np.polyfit(last.x, last.F**0.675, 1)
+            dents.append(-curve(top * delta_y, E, R, S_y, NU, of)[2] / delta_y * slope / start - 1)
+    assert min(len(forces), len(dents)) > 15
+    assert np.sqrt(np.mean(np.square(forces))) < 0.025
+    assert np.sqrt(np.mean(np.square(dents))) < 0.012
 
 
 def test_contact_circles_are_those_of_the_finite_elements():
