@@ -104,8 +104,8 @@ DESIGNS = {35: 28, 136: 32, 271: 16, 613: 16}
 NARROW_MESHES = 8.0, 8.5
 SOLVED_FILE = Path(__file__).with_name("solved_impacts.csv")
 SOLVED = pd.read_csv(SOLVED_FILE, index_col="impact")
-"""Rows of Sobol designs. Narrow beams are deeper than wide, with a contact radius above 0.28 of
-half the width; nothing else of them, and of the deep dents but their depth, was outside the data."""
+"""Rows of Sobol designs: narrow beams, deeper than wide, with a contact radius above 0.28 of half
+the width, and deep dents; by the law of their time nothing else of either was outside the data."""
 KIND = {"outside_contact_law": "status"} | {
     name: "remarks" for name in WARNINGS if name.endswith(("outside_data", "shallow_dent"))
 }

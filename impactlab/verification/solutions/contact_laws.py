@@ -19,8 +19,8 @@ from scipy.optimize import brentq
 from impactlab.model.impact import Impact
 from impactlab.verification.solutions import hertz as hertz_forms
 
-DEPTHS = ((400.0, 0.045), (505.0, 0.024))
-"""d/R beyond which the force of `finite_element` is linear at two E/S, interpolated between them."""
+YIELD_RATIOS, DEPTHS = (400.0, 505.0), (0.045, 0.024)
+"""d/R beyond which the force of `finite_element` is linear at two E/S; between, interpolated."""
 TERMS = (
     (0.032851, 0.16033, -0.05834),
     (0.14274, -0.074368, 0.18104),
@@ -82,7 +82,7 @@ def finite_element(d: float, E: float, R: float, S: float, nu: float) -> float:
 
 def _largest(E: float, R: float, S: float) -> float:
     """Return the indentation at which the fit to finite elements ends."""
-    return float(np.interp(E / S, *zip(*DEPTHS, strict=True))) * R
+    return float(np.interp(E / S, YIELD_RATIOS, DEPTHS)) * R
 
 
 def _fit(
