@@ -31,9 +31,19 @@ EXCEPTIONS = {
     ("narrow 26", "peak_force"): 2.2,
     ("narrow 37", "permanent_indentation"): 6.0,
     ("narrow 63", "contact_duration"): 2.2,
+    ("deep dent 14", "permanent_indentation"): 4.0,
+    ("deep dent 21", "peak_force"): 2.4,
+    ("deep dent 34", "contact_duration"): 4.8,
+    ("deep dent 34", "permanent_indentation"): 3.4,
+    ("deep dent 40", "peak_force"): 3.0,
+    ("deep dent 40", "contact_duration"): 2.9,
+    ("deep dent 44", "maximum_indentation"): 2.6,
+    ("deep dent 44", "permanent_indentation"): 3.4,
+    ("deep dent 47", "contact_duration"): 3.0,
+    ("deep dent 48", "maximum_indentation"): 4.4,
+    ("deep dent 48", "permanent_indentation"): 4.7,
 }
-"""Misses without a mark, and their limits in %. Where the dents are the beam still bends at the end
-of its 3-D run."""
+"""Misses without a mark, and their limits in %."""
 LARGEST_ERRORS = {
     "narrow": {
         "peak_force": 0.82,
@@ -43,9 +53,9 @@ LARGEST_ERRORS = {
     },
     "deep dent": {
         "peak_force": 1.3,
-        "contact_duration": 1.3,
-        "maximum_indentation": 1.1,
-        "permanent_indentation": 1.6,
+        "contact_duration": 1.5,
+        "maximum_indentation": 1.0,
+        "permanent_indentation": 1.7,
     },
 }
 """Root mean squares of the differences from 3-D, in %, of narrow beams and of deep dents."""
