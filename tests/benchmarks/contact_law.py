@@ -5,13 +5,12 @@
 
 The first solves its part of a designed sample with sphere_indentation.py and appends to
 indentation.csv beside this file: `all` and `deep` take an hour together on two cores, `soft` an
-hour more, `shallow` half an hour, `hardened` and `reversed` a quarter each. `deeper`, 40 minutes,
-has indentations of 0.02 to 0.05 R and a file of its own, deeper.csv: it was solved after the fit,
-which is held against it. The second fits
-indentation.csv and the finer data of two equal metals
-(impactlab/solver/contact/finite_element.csv), prints the errors of the fit and of runs held out
-(ten parts), and writes the coefficients to impactlab/solver/contact/metals.py, which says what they
-are.
+hour more, `shallow` half an hour, `hardened` and `reversed` a quarter each; `deeper`, 40 minutes,
+has indentations of 0.02 to 0.05 R and a file of its own, deeper.csv, for it was solved after the
+fit, which tests hold against it. The second fits indentation.csv and the finer data of two equal
+metals (impactlab/solver/contact/finite_element.csv), prints the errors of the fit and of runs held
+out (ten parts), and writes the coefficients to impactlab/solver/contact/metals.py, which says what
+they are.
 
 The sample is of Sobol designs over the flat's share of the compliance, its Poisson's ratio, E*/S_y,
 its hardening modulus and how much of that is kinematic, the sphere's yield stress and the depth:
@@ -165,15 +164,11 @@ def read() -> tuple[list[Run], list[Run]]:
     """Return the runs of the finer data and those of the sample."""
     fine = pd.read_csv(FINE).query("sphere == 'elastic' and strains == 'large' and E_over_S < 400")
     fine = fine.assign(share=0.5, nu=0.3, isotropic=0.0, kinematic=0.0, sphere_yield=math.inf)
-    return [run(fine, 0.0, WEIGHTS)], sample(DATA)
-
-
-def sample(data: Path) -> list[Run]:
-    """Return the runs of a file."""
-    return [
+    sample = [
         run(rows, BIAS * (20.0 / rows.elements.iloc[0]) ** 2, (1.0, 1.0))
-        for _, rows in pd.read_csv(data).groupby("run")
+        for _, rows in pd.read_csv(DATA).groupby("run")
     ]
+    return [run(fine, 0.0, WEIGHTS)], sample
 
 
 def run(rows: pd.DataFrame, bias: float, weights: tuple[float, float]) -> Run:

@@ -67,7 +67,7 @@ def test_the_fit_is_that_of_the_finite_elements():
     [(50, 0.0), (70, 0.045), (400, 0.045), (435, 0.038), (510, 0.024), (1400, 0.024), (1600, 0.0)],
 )
 def test_the_fit_ends_with_the_ratios_of_its_data(ratio, depth):
-    """That of soft metals at a lesser depth, that of others outside the data at first yield."""
+    """On soft metals it ends sooner, and on those outside its data at first yield."""
     R, S_y = 0.035, 345e6
     first_yield = yield_indentation(ratio * S_y, R, S_y)
     last = finite_element.limit(ratio * S_y, R, S_y, 0.3)
