@@ -103,7 +103,8 @@ WARNINGS: dict[str, tuple[int, str]] = {
         outputs.HARDENING_OUTSIDE_DATA,
         "the beam's hardening modulus is above 0.05 of its Young's modulus, beyond the law's data, "
         "or kinematic hardening brings the unloading contact close to yielding in reverse, or the "
-        "beam hardens under the contact beyond twice the sphere's yield stress",
+        "beam hardens under the contact beyond twice the sphere's yield stress, or, more than "
+        "0.024 of its radius deep, beyond the sphere's yield stress",
     ),
     "sphere_yield_outside_data": (
         outputs.SPHERE_YIELD_OUTSIDE_DATA,

@@ -21,11 +21,13 @@ from impactlab.solver.contact.finite_element import (
     LEAST_HARDNESS,
     LEAST_POISSONS_RATIO,
     LEAST_STIFFNESS,
+    SMALLEST_DEPTH,
 )
 from impactlab.solver.contact.history import Pair, energies, pair_radius, yield_stress
 from impactlab.solver.contact.metals import (
     LARGEST_COMPARED_REVERSAL,
     LARGEST_HARDENED,
+    LARGEST_HARDENED_DEEP,
     LARGEST_RATIO,
     LEAST_RATIO,
     hardened,
@@ -155,7 +157,9 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
     hardening = case.beam_isotropic_hardening_modulus + case.beam_kinematic_hardening_modulus
     outside = hardening > LARGEST_HARDENING * case.beam_youngs_modulus
     outside |= reversal(np.sqrt(x), pair.shape) > LARGEST_COMPARED_REVERSAL
-    outside |= hardened(pair.shape[25], x) * S_y > LARGEST_HARDENED * case.sphere_yield_stress
+    is_deep = contact.delta_m > SMALLEST_DEPTH * pair.R
+    largest = LARGEST_HARDENED_DEEP if is_deep else LARGEST_HARDENED
+    outside |= hardened(pair.shape[25], x) * S_y > largest * case.sphere_yield_stress
     if outside:
         answer.remarks |= HARDENING_OUTSIDE_DATA
     if case.sphere_yield_stress < LEAST_HARDNESS * max(case.beam_yield_stress, S_y):

@@ -1,12 +1,14 @@
 """Agreement with 3-D: what misses the target is marked, and the few exceptions are named."""
 
 import importlib
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
 import impactlab as il
+from impactlab.variables import WARNINGS
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::impactlab.TooShortWarning", "ignore::impactlab.ImplausibleWarning"
@@ -116,3 +118,17 @@ def test_contacts_of_any_metal_are_as_in_3d(kind, metals):
     assert len(errors) > 40
     for response, limit in LARGEST_ERRORS[kind].items():
         assert (errors[response] ** 2).mean() ** 0.5 < limit, response
+
+
+@pytest.mark.parametrize(
+    ("velocity", "hardness", "marked"), [(10, 1.0, 0), (20, 1.4, 1), (20, 2, 0)]
+)
+def test_deep_dents_under_a_sphere_that_the_beam_outgrows_are_marked(velocity, hardness, marked):
+    """At 20 m/s, 0.027 R deep, the beam has 1.1 times the flow stress of the second sphere."""
+    impact = il.corrected_impact(velocity)
+    metal = replace(impact.beam.material, isotropic_hardening_modulus=4e9)
+    hard = replace(impact.sphere.material, yield_stress=hardness * metal.yield_stress)
+    beam, sphere = replace(impact.beam, material=metal), replace(impact.sphere, material=hard)
+    impact = replace(impact, beam=beam, sphere=sphere)
+    run = il.simulate(impact, il.Discretisation(nodes=101), duration=0.2e-3)
+    assert bool(int(run.remarks) & WARNINGS["hardening_outside_data"][0]) == marked
