@@ -46,7 +46,7 @@ PINNED = --constraint constraints.txt --editable '.[$*]'
 SNAKEMAKE := $(IN_VENV) snakemake --cores $(CORES) --keep-going --rerun-incomplete \
   --max-jobs-per-timespan 100/5s
 
-.PHONY: writable study paper all test lint pytest long chaos kratos oldest docs stored site release bench scaling mutants coverage constraints unlock clean
+.PHONY: writable study paper all test lint kernels pytest long chaos kratos oldest docs stored site release bench scaling mutants coverage constraints unlock clean
 .DEFAULT_GOAL := study
 
 STOPPED := echo; echo 'Not finished, or a check failed: see the messages above and the logs in results/*/logs.'; \
@@ -72,7 +72,10 @@ all: writable $(MADE)-workflow
 	@$(SNAKEMAKE) --quiet all -- all paper || { $(STOPPED); }
 	@echo; echo 'Done. Open results/index.html and results/paper/claims.html'
 
-test: lint pytest
+# Types are checked on one core while kernels compile.
+test: $(MADE)-dev
+	$(MAKE) --jobs 2 --output-sync=target lint kernels
+	$(MAKE) pytest
 
 lint: $(MADE)-dev
 	$(BIN)/ruff format --check .
@@ -81,13 +84,15 @@ lint: $(MADE)-dev
 	$(BIN)/lint-imports
 	$(IN_VENV) snakemake --lint
 
-# Kernels first, at once: they share what they have in common.
-pytest: $(MADE)-dev
+# At once: they share what they have in common.
+kernels: $(MADE)-dev
 	$(IN_VENV) impactlab compile --wings
+
+pytest: kernels
 	$(IN_VENV) python -m pytest -n auto --dist worksteal $(PYTEST_ARGS)
 
 long: $(MADE)-dev
-	$(IN_VENV) python -m pytest -n auto -m long $(PYTEST_ARGS)
+	$(IN_VENV) python -m pytest -n 3 --dist worksteal -m long $(PYTEST_ARGS)
 
 chaos: $(MADE)-dev
 	$(IN_VENV) python -m pytest -n 2 --dist worksteal -m chaos $(PYTEST_ARGS)

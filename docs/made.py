@@ -9,6 +9,7 @@ import shutil
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from itertools import islice
 from multiprocessing import get_context
 from pathlib import Path
@@ -19,7 +20,7 @@ from PIL import Image
 
 import impactlab as il
 from impactlab.fem3d.figures import witness
-from impactlab.figures.draw import OVERVIEW
+from impactlab.figures.draw import OVERVIEW, draw, draw_all
 from impactlab.figures.record import listed
 from impactlab.files import read_netcdf, write_netcdf
 from impactlab.report.page import leading
@@ -144,16 +145,16 @@ def _solved(study: il.Study, workers: int = 1) -> Shown:
 
     The answer of beam models beside 3-D finite elements is how much they differ.
     """
-    runs = study.run(workers=workers)
-    study.figures()
-    analysis = read_netcdf(study.folder / "analysis.nc", "analysis")
+    runs, pictures = study.run(workers=workers), ROOT / "build" / "gallery" / study.name
+    analysis = study.analyse()
+    draw_all(runs, analysis, pictures, partial(draw, formats=["png"]))
     answers, compared = il.answers(runs, analysis), witness.findings(runs, analysis)
-    captions = listed(study.folder / "figures")
+    captions = listed(pictures)
     for *_, page in answers_beside(runs, study.folder):
         drawings = (study.folder / page).with_suffix("") / "figures"
         for name, caption in listed(drawings).items():
             captions[name] = caption
-            shutil.copyfile(drawings / f"{name}.png", study.folder / "figures" / f"{name}.png")
+            shutil.copyfile(drawings / f"{name}.png", pictures / f"{name}.png")
     first = FIRST.get(study.name) or leading(captions)
     for sentence in compared:  # the answer is not said again beneath the figure
         captions[first]["caption"] = captions[first]["caption"].replace(f" {sentence}", "")
@@ -161,7 +162,7 @@ def _solved(study: il.Study, workers: int = 1) -> Shown:
         compared or answers,
         answers if compared else [],
         {first: captions[first]} | captions,
-        study.folder / "figures",
+        pictures,
     )
 
 

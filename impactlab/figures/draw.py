@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from itertools import count
 from pathlib import Path
@@ -76,11 +76,15 @@ def draw_findings(
 
 @judged_once()
 def draw(
-    drawings: Iterable[Drawing], folder: Path, study: str, made_from: xr.Dataset | None = None
+    drawings: Iterable[Drawing],
+    folder: Path,
+    study: str,
+    made_from: xr.Dataset | None = None,
+    formats: Sequence[str] = FORMATS,
 ) -> list[Path]:
     """Write NAME.svg, NAME.png, the data behind it (see data.py), and captions.json.
 
-    The metadata of both pictures name the study and the hash of its file.
+    The metadata of the pictures name the study and the hash of its file. formats: see `save`.
 
     captions.json: {NAME: {"title", "caption", "alt", "made_from"}} in the order of the report.
     Files of figures that it named before and that are no longer drawn are removed. The same
@@ -96,7 +100,7 @@ def draw(
     for entry, pair in drawings:
         try:
             figure = entry.plot(*pair)
-            written += save(figure, folder, entry.name, _about(entry, pair[0], study))
+            written += save(figure, folder, entry.name, _about(entry, pair[0], study), formats)
             written += data.save(figure, folder, entry.name)
             captions[entry.name] = {
                 "title": entry.title,

@@ -44,14 +44,14 @@ def ran(folder, program, package):
     return done.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_study_of_beams_imports_only_the_records_of_the_wings(tmp_path):
     printed = ran(tmp_path, PROGRAM + LOADED, CHECKOUT)
     assert (tmp_path / "report.html").exists()
     assert printed.splitlines()[-1].split() == ["impactlab.fem3d.wing", "impactlab.paper.wing"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_core_works_without_the_folders_of_the_wings(tmp_path):
     wings_and_caches = shutil.ignore_patterns("fem3d", "paper", "__pycache__")
     shutil.copytree(CHECKOUT / "impactlab", tmp_path / "core/impactlab", ignore=wings_and_caches)

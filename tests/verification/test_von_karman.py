@@ -272,6 +272,7 @@ def half_periods(times, w):
     return times[at] + (times[1] - times[0]) * w[at] / (w[at] - w[at + 1])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("n", "pull"), [(1, 0.0), (1, 3.0), (1, -0.5), (3, 0.0), (3, 3.0)])
 @pytest.mark.parametrize("amplitude", [1e-3, 1.0, 3.0])
 def test_free_vibrations_have_woinowsky_kriegers_period(amplitude, pull, n):
@@ -290,6 +291,7 @@ def test_free_vibrations_have_woinowsky_kriegers_period(amplitude, pull, n):
     assert 2.0 * np.diff(half_periods(times, w)) == pytest.approx(expected, rel=2e-3)
 
 
+@pytest.mark.long
 def test_a_pulled_beams_vibrations_decay_by_the_bending_alone():
     """decay = (alpha + beta EI k^4/mu)/2: the axial force stores energy without strain rate."""
     impact = held(elastic(PAPER), depth=0.006, mass_damping=20.0, stiffness_damping=2e-4)

@@ -19,7 +19,7 @@ from impactlab.validation.errors import StudyError
 
 SECONDS = 20
 ROOM = 1 << 30
-FEW, MANY = 20, 600
+FEW, MANY = 20, 300
 """Files of a kind: 11 kinds."""
 _DRAWN = 2000
 """Runs of a study that is drawn, at most: the samplers are not what is tested."""

@@ -24,7 +24,7 @@ CASES = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("case", CASES)
 def test_a_smooth_response_takes_a_tenth_of_the_runs(case):
     response, parameters, limit, exact = CASES[case]
@@ -35,7 +35,7 @@ def test_a_smooth_response_takes_a_tenth_of_the_runs(case):
     assert max(result.runs for result in results) < 400
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_process_that_is_wrong_costs_runs_but_adds_no_bias(monkeypatch):
     """Many small waves look like noise to the process, and move the limit."""
     monkeypatch.setattr(limit_state, "_LEARNING", 80)  # more take seconds, and teach nothing
@@ -77,7 +77,7 @@ def test_no_more_runs_are_placed_where_runs_have_failed():
     assert (left[:2, 1] < 0).all()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     "response",
     [

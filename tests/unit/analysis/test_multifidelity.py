@@ -83,7 +83,7 @@ def test_quantiles_are_covered_and_as_accurate_as_they_say():
     assert plain / values.var() == pytest.approx(saving, rel=0.5)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_outer_quantiles_are_covered_and_save_runs_where_the_models_agree():
     ends = (0.05, 0.95)
     pairs = [ishigami_pair(seed, 0.97, runs=100, low_runs=800) for seed in range(60)]
@@ -195,7 +195,7 @@ def predicted_pair(seed, rest, pairs=20, points=20):
     return models.prediction(places, low[pairs:]), high[pairs:]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("rest", "width"),
     [

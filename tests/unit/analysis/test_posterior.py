@@ -98,7 +98,7 @@ def test_of_a_linear_model_it_is_the_normal_posterior_and_evidence():
     )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_intervals_cover_parameters_drawn_from_the_prior():
     surrogate, rng = linear(BOTH, rmse=0.1), np.random.default_rng(3)
     ranks = []

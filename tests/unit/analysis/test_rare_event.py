@@ -28,7 +28,7 @@ CASES = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("case", CASES)
 def test_estimates_agree_with_the_exact_probability(case):
     response, parameters, limit, exact = CASES[case]

@@ -28,7 +28,7 @@ def depth_of(wanted):
     return brentq(lambda depth: np.log(probability(depth) / wanted), 1, 1000)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("wanted", [0.1, 1e-5])
 def test_a_design_meets_the_probability_and_is_hardly_heavier_than_the_best(wanted):
     exact = depth_of(wanted)

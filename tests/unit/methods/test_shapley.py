@@ -83,6 +83,7 @@ def sample_of(inputs, seed, words=()):
     return Sample.of(runs)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "runs"),
     [("correlated", 128), ("inert but correlated", 512), ("ishigami", 512), ("word", 128)],

@@ -10,6 +10,7 @@ import impactlab as il
 from impactlab.variables import FIELDS, PROFILES
 from impactlab.verification.cases import discretised
 
+pytestmark = pytest.mark.slow  # kernels for most beam models
 GRID = il.Discretisation(nodes=41, points=7)
 DURATION = 0.8e-3
 PAPER = il.paper_impact(12.0)

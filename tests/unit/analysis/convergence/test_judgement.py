@@ -100,7 +100,7 @@ FAMILIES = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("family", FAMILIES)
 @pytest.mark.parametrize(
     ("ratio", "grids"), [(1.1, 4), (1.2, 3), (1.2, 6), (2**0.5, 3), (2**0.5, 5), (2.0, 3), (2.0, 4)]

@@ -36,7 +36,7 @@ def significant(*studies):
     return differences(studies, "peak_force", ORDERS)["is_significant"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "shared"), [("ishigami", False), ("sobol_g", True)])
 def test_equal_indices_seldom_differ(request, study, name, shared):
     """The rate of false alarms is 0 to 5 % with 256 base samples, 0 to 8 % with 64: over 250 seeds,

@@ -85,6 +85,7 @@ def peak(run):
 PEAK = il.Function(peak)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::impactlab.TooShortWarning")
 @pytest.mark.parametrize(
     "changes",
