@@ -25,10 +25,10 @@ from impactlab.solver.contact.finite_element import (
 )
 from impactlab.solver.contact.history import Pair, energies, pair_radius, yield_stress
 from impactlab.solver.contact.metals import (
-    LARGEST_COMPARED_REVERSAL,
     LARGEST_HARDENED,
     LARGEST_HARDENED_DEEP,
     LARGEST_RATIO,
+    LARGEST_REVERSAL,
     LEAST_RATIO,
     hardened,
     reversal,
@@ -156,7 +156,7 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
         answer.remarks |= POISSONS_RATIO_OUTSIDE_DATA
     hardening = case.beam_isotropic_hardening_modulus + case.beam_kinematic_hardening_modulus
     outside = hardening > LARGEST_HARDENING * case.beam_youngs_modulus
-    outside |= reversal(np.sqrt(x), pair.shape) > LARGEST_COMPARED_REVERSAL
+    outside |= reversal(np.sqrt(x), pair.shape) > LARGEST_REVERSAL
     is_deep = contact.delta_m > SMALLEST_DEPTH * pair.R
     largest = LARGEST_HARDENED_DEEP if is_deep else LARGEST_HARDENED
     outside |= hardened(pair.shape[25], x) * S_y > largest * case.sphere_yield_stress

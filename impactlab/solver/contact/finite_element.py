@@ -32,7 +32,6 @@ from impactlab.solver.contact.metals import (
     LARGEST_REVERSAL,
     LEAST_POISSONS_RATIO,
     LEAST_RATIO,
-    LEAST_REVERSAL,
     LIKE_METALS,
     ONSET,
     ONSET_EXPONENT,
@@ -94,7 +93,7 @@ def _depth(E: float, R: float, S_y: float) -> float:
 def _circle(log: float, w: float, hard: float, shape: Shape) -> float:
     """Return a^2/(R delta) of the contact circle, for log = ln x and hard = q sqrt(x)."""
     circle = min(1.0 + 0.04 * log * log, FULLY_PLASTIC)
-    return circle * (1.0 - shape[28] * hard * w / (HALF_SUNK_IN + hard))
+    return circle * (1.0 - shape[30] * hard * w / (HALF_SUNK_IN + hard))
 
 
 @compiled
@@ -102,7 +101,7 @@ def _crowded(crowding: Crowding, area: float, x: float, w: float, shape: Shape) 
     """Return 1/g - 1; area: a^2 (m2)."""
     sides, depth = min(crowding[0] * area, 1.0), min(crowding[1] * area, 1.0)
     by_sides, in_depth = sides * math.sqrt(sides), depth * math.sqrt(math.sqrt(depth))
-    r = shape[29] * hardened(shape[25], x)
+    r = shape[31] * hardened(shape[25], x)
     return float(w * w * (w * by_sides + in_depth) / (1.0 + SPHERE_FLOWS * r**4))
 
 
@@ -136,23 +135,27 @@ def curve(
     share = 1.0 + w * ONSET + ww * share
     n = shape[9] + w * shape[10] + ww * shape[11] + log * shape[12] + s * shape[15]
     n = 1.5 + w * ONSET_EXPONENT + ww * n
+    excess = 0.0
     if shape[25] > 0.0:
         hard = shape[25] * s
         Q = hard * w / (1.0 + 0.15 * hard)
         bend += Q * (shape[16] + w * shape[17] + log * shape[18])
         share += Q * (w * (shape[19] + w * shape[20]) + Q * shape[21])
         n += Q * (w * (shape[22] + w * shape[23]) + Q * shape[24])
-        excess = min(reversal(s, shape), LARGEST_REVERSAL) - LEAST_REVERSAL
-        if excess > 0.0:
-            share *= 1.0 + REVERSED_RECOVERY * excess
-            n += REVERSED_EXPONENT * excess
         n = min(max(n, 1.0), 2.5)
+        excess = min(reversal(s, shape), LARGEST_REVERSAL) - shape[28]
     bent = math.exp(0.5 * bend)  # the square root of F over Hertz's
     F, recovered = (
         K * delta_y * math.sqrt(delta_y) * x * s * bent * bent,
         delta_y * s * bent * share,
     )
     recovered *= math.sqrt(s)
+    if excess > 0.0:
+        dent = delta_y * x / recovered - 1.0
+        longer = REVERSED_RECOVERY[0] * excess * dent
+        longer *= excess / (excess + shape[29] * dent)
+        recovered *= 1.0 + longer
+        n += REVERSED_EXPONENT[0] * longer / (1.0 + REVERSED_EXPONENT[1] * longer)
     if max(crowding) > 0.0:
         area = R * min(delta, end) * _circle(log, w, shape[25] * s, shape)
         share = 1.0 / (1.0 + _crowded(crowding, area, x, w, shape))

@@ -60,7 +60,7 @@ def test_force_and_unloading_are_those_of_the_finite_elements():
             largest = loading.F[loading.x == top]
             if len(largest):
                 error = left / F_m - F / largest.iloc[0]
-                fitted = metals.reversal(np.sqrt(top), of) <= metals.LARGEST_REVERSAL
+                fitted = metals.reversal(np.sqrt(top), of) <= 1.0
                 fitted &= not outgrows(run.iloc[0], of, top)
                 (unloading if fitted else beyond).append(error)
         for top, branch in run[run.x < run.x_max].groupby("x_max"):
@@ -126,25 +126,31 @@ def test_contact_circles_are_those_of_the_finite_elements():
 def test_dents_of_metals_that_yield_in_reverse_are_those_of_the_finite_elements():
     """Where F^(2/3) of the last three forces vanishes, of unloading to 0.3 % of the largest force.
 
-    With and without isotropic hardening, from well before it yields in reverse.
+    With and without isotropic hardening, from well before it yields in reverse to where z is held,
+    in the law's range.
     """
     missed, recovered, reversals = [], [], []
     for _, run in REVERSAL.groupby("run"):
         of, S_y = shape_of(run.iloc[0]), E / run.E_over_S.iloc[0]
         delta_y = yield_indentation(E, R, S_y)
         for top, branch in run[run.x < run.x_max].groupby("x_max"):
+            if top * delta_y > finite_element.limit(E, R, S_y, NU):
+                continue
             last = branch.nsmallest(3, "F")
             slope, start = np.polyfit(last.x, last.F ** (2 / 3), 1)
             dent = curve(top * delta_y, E, R, S_y, NU, of)[2] / delta_y
             missed.append(-dent * slope / start - 1.0)
             recovered.append((top - dent) / (top + start / slope) - 1.0)
             reversals.append(metals.reversal(np.sqrt(top), of))
-    reverses = np.array(reversals) > metals.LEAST_REVERSAL
-    assert np.bincount(reverses).min() > 5
+    missed, recovered = np.array(missed), np.array(recovered)
+    group = np.digitize(reversals, [0.3, 0.5, 1.0])
+    assert np.bincount(group).min() > 12
     assert max(reversals) > 0.9 * metals.LARGEST_REVERSAL
-    assert np.sqrt(np.mean(np.square(missed))) < 0.012
-    assert np.abs(missed).max() < 0.03
-    assert abs(np.mean(np.array(recovered)[reverses])) < 0.006
+    rms = np.sqrt(np.bincount(group, missed**2) / np.bincount(group))
+    assert (rms < [0.01, 0.012, 0.01, 0.025]).all()
+    assert abs(missed[group < 3]).max() < 0.03
+    assert abs(missed).max() < 0.06
+    assert abs(np.mean(recovered[group > 0])) < 0.006
 
 
 def test_soft_metals_are_met_or_marked():
@@ -165,10 +171,10 @@ def test_soft_metals_are_met_or_marked():
         strain = 0.2 * np.sqrt(2.0 * x * delta_y / R)
         flow = 1.0 + modulus * (metal.isotropic + metal.kinematic) * strain
         assert metals.hardened(of[25], x) == pytest.approx(flow, rel=1e-12)
-        reverses = metals.reversal(np.sqrt(x), of) > metals.LARGEST_COMPARED_REVERSAL
+        reverses = metals.reversal(np.sqrt(x), of) > metals.LARGEST_REVERSAL
         marked.append(outgrows(metal, of, x) or reverses)
     missed, marked = np.array(missed), np.array(marked)
-    assert (marked.sum(), len(marked)) == (5, 24)
+    assert (marked.sum(), len(marked)) == (2, 24)
     assert abs(missed[~marked]).max() < 0.02
     assert np.sqrt(np.mean(missed[~marked] ** 2)) < 0.01
 
@@ -200,4 +206,4 @@ def test_no_metal_creates_energy(crowding):
         assert (F * (x - dent) / (n + 1.0) <= work).all(), (ratio, of)
         assert (dent >= 0.0).all()
         assert (dent < x).all()
-        assert ((n >= 1.0) & (n <= 2.5)).all()
+        assert ((n >= 1.0) & (n <= 4.5)).all()
