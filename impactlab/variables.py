@@ -102,9 +102,9 @@ WARNINGS: dict[str, tuple[int, str]] = {
     "hardening_outside_data": (
         outputs.HARDENING_OUTSIDE_DATA,
         "the beam's hardening modulus is above 0.05 of its Young's modulus, beyond the law's data, "
-        "or kinematic hardening brings the unloading contact close to yielding in reverse, or the "
-        "beam hardens under the contact beyond twice the sphere's yield stress, or, more than "
-        "0.024 of its radius deep, beyond the sphere's yield stress",
+        "or kinematic hardening lets the unloading contact yield in reverse farther than there, or "
+        "the beam hardens under the contact beyond twice the sphere's yield stress, or, more than "
+        "0.024 of its radius deep or where it yields in reverse, beyond the sphere's yield stress",
     ),
     "sphere_yield_outside_data": (
         outputs.SPHERE_YIELD_OUTSIDE_DATA,

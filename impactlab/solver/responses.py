@@ -25,8 +25,9 @@ from impactlab.solver.contact.finite_element import (
 )
 from impactlab.solver.contact.history import Pair, energies, pair_radius, yield_stress
 from impactlab.solver.contact.metals import (
+    FAR_REVERSAL,
     LARGEST_HARDENED,
-    LARGEST_HARDENED_DEEP,
+    LARGEST_HARDENED_FAR,
     LARGEST_RATIO,
     LARGEST_REVERSAL,
     LEAST_RATIO,
@@ -156,9 +157,10 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
         answer.remarks |= POISSONS_RATIO_OUTSIDE_DATA
     hardening = case.beam_isotropic_hardening_modulus + case.beam_kinematic_hardening_modulus
     outside = hardening > LARGEST_HARDENING * case.beam_youngs_modulus
-    outside |= reversal(np.sqrt(x), pair.shape) > LARGEST_REVERSAL
-    is_deep = contact.delta_m > SMALLEST_DEPTH * pair.R
-    largest = LARGEST_HARDENED_DEEP if is_deep else LARGEST_HARDENED
+    z = reversal(np.sqrt(x), pair.shape)
+    outside |= z > LARGEST_REVERSAL
+    is_far = contact.delta_m > SMALLEST_DEPTH * pair.R or z > FAR_REVERSAL
+    largest = LARGEST_HARDENED_FAR if is_far else LARGEST_HARDENED
     outside |= hardened(pair.shape[25], x) * S_y > largest * case.sphere_yield_stress
     if outside:
         answer.remarks |= HARDENING_OUTSIDE_DATA

@@ -42,9 +42,9 @@ REVERSED_RECOVERY, REVERSED_EXPONENT = (0.18, 0.012), (2.24, 0.53)
 LARGEST_HARDENED = 2.0
 """Hardened flow stress under the contact over the other body's yield stress, beyond which runs are
 marked: that body then yields more than in the data; at 4.2 the force is 8 % too large."""
-LARGEST_HARDENED_DEEP = 1.0
-"""The same beyond 0.024 R, where no more was compared with 3-D: from 1.2 on, the force is 3 to 8 %
-above the data."""
+LARGEST_HARDENED_FAR, FAR_REVERSAL = 1.0, 0.5
+"""The same beyond 0.024 R, and z beyond which it is the same: no more was compared with 3-D. From
+1.1 on, the force is 3 to 8 % above the data."""
 SUNK_IN = 0.47, 1.5
 """Share that hardening takes off a^2/(R delta) in the end, for metal that hardens sinks in around a
 contact, and how that falls with t: of two bodies that yield it presses the other one flat."""

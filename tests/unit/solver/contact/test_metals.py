@@ -34,7 +34,9 @@ def shape_of(row):
 
 
 def outgrows(metal, of, x):
-    return metals.hardened(of[25], x) > metals.LARGEST_HARDENED * metal.sphere_yield
+    is_far = metals.reversal(np.sqrt(x), of) > metals.FAR_REVERSAL
+    largest = metals.LARGEST_HARDENED_FAR if is_far else metals.LARGEST_HARDENED
+    return metals.hardened(of[25], x) > largest * metal.sphere_yield
 
 
 def test_force_and_unloading_are_those_of_the_finite_elements():
@@ -127,30 +129,32 @@ def test_dents_of_metals_that_yield_in_reverse_are_those_of_the_finite_elements(
     """Where F^(2/3) of the last three forces vanishes, of unloading to 0.3 % of the largest force.
 
     With and without isotropic hardening, from well before it yields in reverse to where z is held,
-    in the law's range.
+    in the law's range and where runs have no mark.
     """
     missed, recovered, reversals = [], [], []
     for _, run in REVERSAL.groupby("run"):
         of, S_y = shape_of(run.iloc[0]), E / run.E_over_S.iloc[0]
         delta_y = yield_indentation(E, R, S_y)
         for top, branch in run[run.x < run.x_max].groupby("x_max"):
-            if top * delta_y > finite_element.limit(E, R, S_y, NU):
+            z = metals.reversal(np.sqrt(top), of)
+            if top * delta_y > finite_element.limit(E, R, S_y, NU) or z > metals.LARGEST_REVERSAL:
+                continue
+            if outgrows(run.iloc[0], of, top):
                 continue
             last = branch.nsmallest(3, "F")
             slope, start = np.polyfit(last.x, last.F ** (2 / 3), 1)
             dent = curve(top * delta_y, E, R, S_y, NU, of)[2] / delta_y
             missed.append(-dent * slope / start - 1.0)
             recovered.append((top - dent) / (top + start / slope) - 1.0)
-            reversals.append(metals.reversal(np.sqrt(top), of))
+            reversals.append(z)
     missed, recovered = np.array(missed), np.array(recovered)
     group = np.digitize(reversals, [0.3, 0.5, 1.0])
     assert np.bincount(group).min() > 12
     assert max(reversals) > 0.9 * metals.LARGEST_REVERSAL
     rms = np.sqrt(np.bincount(group, missed**2) / np.bincount(group))
-    assert (rms < [0.01, 0.012, 0.01, 0.025]).all()
-    assert abs(missed[group < 3]).max() < 0.03
-    assert abs(missed).max() < 0.06
-    assert abs(np.mean(recovered[group > 0])) < 0.006
+    assert (rms < [0.01, 0.012, 0.01, 0.02]).all()
+    assert abs(missed).max() < 0.036
+    assert abs(np.mean(recovered[group > 1])) < 0.006
 
 
 def test_soft_metals_are_met_or_marked():
@@ -174,7 +178,7 @@ def test_soft_metals_are_met_or_marked():
         reverses = metals.reversal(np.sqrt(x), of) > metals.LARGEST_REVERSAL
         marked.append(outgrows(metal, of, x) or reverses)
     missed, marked = np.array(missed), np.array(marked)
-    assert (marked.sum(), len(marked)) == (2, 24)
+    assert (marked.sum(), len(marked)) == (3, 24)
     assert abs(missed[~marked]).max() < 0.02
     assert np.sqrt(np.mean(missed[~marked] ** 2)) < 0.01
 
