@@ -6,7 +6,8 @@ Writes docs/agreement_metals.csv. Twelve cases were chosen by hand while the con
 being made, where its forerunner had been worst. The others are Sobol designs over the range for
 which the law is made, solved in 3-D once it was fixed. Of further designs are narrow beams, that
 is deeper than wide with a contact that is wide between their sides, and deep dents, with an
-indentation above 0.024 R: solved_impacts.csv has their 3-D answers in SI units. The crowding
+indentation above 0.024 R, and contacts that yield in reverse, the first of a design that were
+marked for that alone: solved_impacts.csv has their 3-D answers in SI units. The crowding
 (solver/contact/finite_element.py) was fitted to narrow beams with `fit`, to beams deeper than wide
 of the other designs and to large_contacts.csv; its form, or how deep the law reaches, was chosen
 with those with `held out` in sight, and those with `after` were solved when all was fixed. The 3-D
@@ -105,7 +106,8 @@ NARROW_MESHES = 8.0, 8.5
 SOLVED_FILE = Path(__file__).with_name("solved_impacts.csv")
 SOLVED = pd.read_csv(SOLVED_FILE, index_col="impact")
 """Rows of Sobol designs: narrow beams, deeper than wide, with a contact radius above 0.28 of half
-the width, and deep dents; by the law of their time nothing else of either was outside the data."""
+the width, deep dents, and contacts that yield in reverse; by the law of their time nothing else of
+them was outside the data."""
 KIND = {"outside_contact_law": "status"} | {
     name: "remarks" for name in WARNINGS if name.endswith(("outside_data", "shallow_dent"))
 }
@@ -140,7 +142,7 @@ def designed() -> Iterator[tuple[str, il.Impact]]:
 
 
 def solved() -> Iterator[tuple[str, il.Impact]]:
-    """Yield the name and the impact of each narrow beam and each deep dent."""
+    """Yield the name and the impact of each row of SOLVED."""
     rows = {seed: qmc.Sobol(8, seed=seed).random(512) for seed in SOLVED.seed.unique()}
     for name, seed, number in zip(SOLVED.index, SOLVED.seed, SOLVED.number, strict=True):
         yield name, _designed(number, rows[seed][number - 1])

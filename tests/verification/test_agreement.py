@@ -4,6 +4,7 @@ import importlib
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -28,39 +29,55 @@ TARGET = {
 """Largest difference from 3-D in %."""
 EXCEPTIONS = {
     ("design 33", "permanent_indentation"): 3.5,
+    ("design 60", "force_history"): 6.6,
     ("design 79", "permanent_indentation"): 3.5,
     ("narrow 11", "contact_duration"): 3.5,
+    ("narrow 16", "contact_duration"): 5.0,
     ("narrow 26", "peak_force"): 2.2,
     ("narrow 37", "permanent_indentation"): 6.0,
     ("narrow 63", "contact_duration"): 2.2,
     ("deep dent 14", "permanent_indentation"): 4.0,
     ("deep dent 21", "peak_force"): 2.4,
-    ("deep dent 34", "contact_duration"): 4.8,
-    ("deep dent 34", "permanent_indentation"): 3.4,
+    ("deep dent 34", "contact_duration"): 3.4,
     ("deep dent 40", "peak_force"): 3.0,
-    ("deep dent 40", "contact_duration"): 2.9,
+    ("deep dent 40", "contact_duration"): 2.4,
     ("deep dent 44", "maximum_indentation"): 2.6,
     ("deep dent 44", "permanent_indentation"): 3.4,
     ("deep dent 47", "contact_duration"): 3.0,
     ("deep dent 48", "maximum_indentation"): 4.4,
     ("deep dent 48", "permanent_indentation"): 4.7,
+    ("reversed 14", "contact_duration"): 2.7,
+    ("reversed 15", "contact_duration"): 4.3,
+    ("reversed 15", "permanent_indentation"): 3.2,
+    ("reversed 18", "permanent_indentation"): 5.8,
+    ("reversed 20", "contact_duration"): 4.5,
+    ("reversed 26", "peak_force"): 2.2,
+    ("reversed 26", "contact_duration"): 4.3,
+    ("reversed 26", "force_history"): 17.0,
 }
 """Misses without a mark, and their limits in %."""
 LARGEST_ERRORS = {
     "narrow": {
-        "peak_force": 0.82,
-        "contact_duration": 1.0,
+        "peak_force": 0.8,
+        "contact_duration": 0.8,
         "maximum_indentation": 0.6,
-        "permanent_indentation": 1.5,
+        "permanent_indentation": 1.3,
     },
     "deep dent": {
-        "peak_force": 1.3,
-        "contact_duration": 1.5,
-        "maximum_indentation": 1.0,
-        "permanent_indentation": 1.7,
+        "peak_force": 1.2,
+        "contact_duration": 1.2,
+        "maximum_indentation": 0.6,
+        "permanent_indentation": 1.3,
+    },
+    "reversed": {
+        "peak_force": 0.7,
+        "contact_duration": 0.9,
+        "maximum_indentation": 0.5,
+        "permanent_indentation": 1.1,
     },
 }
-"""Root mean squares of the differences from 3-D, in %, of narrow beams and of deep dents."""
+"""Root mean squares of the differences from 3-D but for the exceptions, in %, of narrow beams, of
+deep dents and of contacts that yield in reverse."""
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +121,10 @@ def test_cases_without_a_mark_meet_the_target():
 
 @pytest.mark.parametrize("kind", LARGEST_ERRORS)
 def test_contacts_of_any_metal_are_as_in_3d(kind, metals):
-    """Without any part of what a narrow beam's sides do to its contact one error is larger."""
+    """One error is larger without any part of what a narrow beam's sides do to its contact.
+
+    Or of what reversed yielding adds.
+    """
     grid, responses = il.Discretisation(nodes=101), list(LARGEST_ERRORS[kind])
     differences = {}
     for name, impact in metals.solved():
@@ -114,8 +134,12 @@ def test_contacts_of_any_metal_are_as_in_3d(kind, metals):
         run = il.simulate(impact, grid, duration=1.1 * answers.contact_duration)
         if not metals.marks(run):
             differences[name] = run[responses].to_array("response").to_series() / answers[responses]
-    errors = 100.0 * (pd.DataFrame(differences).T - 1.0)
-    assert len(errors) > 40
+    errors = 100.0 * (pd.DataFrame(differences, dtype=float).T - 1.0)
+    assert len(errors) > 30
+    for (name, response), limit in EXCEPTIONS.items():
+        if name in errors.index and response in responses:
+            assert abs(errors.loc[name, response]) < limit, (name, response)
+            errors.loc[name, response] = np.nan
     for response, limit in LARGEST_ERRORS[kind].items():
         assert (errors[response] ** 2).mean() ** 0.5 < limit, response
 
