@@ -26,7 +26,6 @@ from impactlab.solver.contact import finite_element, metals
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 START = 1.41, 0.3, -0.5, 0.6, 0.18, 0.01, 2.2, 0.5
 """Of t in z, of z_0, of what is recovered and of the exponent."""
-LARGEST = metals.LARGEST_REVERSAL
 SCALES = 0.008, 0.015, 0.012
 """Errors that weigh one: mean and scatter of a curve, share of a dent."""
 
@@ -53,21 +52,14 @@ def branches(rows: pd.DataFrame, long: bool) -> list[Branch]:
     curves = []
     for run, solve in rows.groupby("run"):
         metal = tuple(float(solve[name].iloc[0]) for name in METALS)
-        loading, shape, (ratio, share, nu, isotropic, kinematic, sphere) = (
-            solve[solve.x == solve.x_max].set_index("x").F,
-            curve(metal),
-            metal,
-        )
+        ratio, share, nu, isotropic, kinematic, sphere = metal
+        loading, shape = solve[solve.x == solve.x_max].set_index("x").F, curve(metal)
         delta_y = (0.825 * math.pi / ratio) ** 2
         for top, branch in solve[solve.x < solve.x_max].groupby("x_max"):
             z = metals.reversal(math.sqrt(top), shape)
             outgrown = metals.hardened(shape[25], top) > 1.3 * sphere
-            if (
-                top not in loading.index
-                or not 0.1 < z < LARGEST
-                or outgrown
-                or top * delta_y > 0.05
-            ):
+            is_fitted = 0.1 < z < metals.LARGEST_REVERSAL and not outgrown and top * delta_y < 0.05
+            if top not in loading.index or not is_fitted:
                 continue
             peak = loading[top]
             plain = (*shape[:26], 0.0, *shape[27:])
