@@ -51,8 +51,8 @@ DEFAULT_LAW = replace(il.paper_impact(contact="finite_element"), beam_model="tim
         ),
         (
             "hardening",  # here it unloads by yielding in reverse
-            {"velocity": 5.0, "beam_kinematic_hardening_modulus": 5e9},
-            {"velocity": 5.0, "beam_kinematic_hardening_modulus": 7e9},
+            {"velocity": 5.0, "beam_yield_stress": 85e6, "beam_kinematic_hardening_modulus": 5e9},
+            {"velocity": 5.0, "beam_yield_stress": 85e6, "beam_kinematic_hardening_modulus": 10e9},
         ),
         ("sphere_yield", {"sphere_yield_stress": 350e6}, {"sphere_yield_stress": 330e6}),
         (
