@@ -59,7 +59,7 @@ def run(*command, cwd):
     """Run a command without anything of this environment; it must succeed."""
     kept = {name: os.environ[name] for name in ("HOME", "LANG") if name in os.environ}
     env = kept | {"PATH": f"{cwd / 'env' / 'bin'}:/usr/bin:/bin"}
-    env |= {name: value for name, value in os.environ.items() if name.startswith(("PIP_", "SSL_"))}
+    env |= {name: value for name, value in os.environ.items() if name.startswith(("UV_", "SSL_"))}
     folder = cwd / "mine" if command[0] == "snakemake" else cwd
     done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -71,9 +71,9 @@ def test_a_project_of_a_wheel_runs_in_an_empty_environment(tmp_path):
     wheel = (sys.executable, "-m", "pip", "wheel", "--no-deps", "--wheel-dir", ".", ROOT)
     run(*map(str, wheel), cwd=tmp_path)
     (built,) = tmp_path.glob("impactlab-*.whl")
-    run(sys.executable, "-m", "venv", "env", cwd=tmp_path)
-    pins = ("--constraint", str(ROOT / "constraints.txt"), "--no-compile")
-    run("env/bin/pip", "install", *pins, f"{built}[workflow]", cwd=tmp_path)
+    run(sys.executable, "-m", "venv", "--without-pip", "env", cwd=tmp_path)
+    pins = ("--constraint", str(ROOT / "constraints.txt"), "--python", "env/bin/python")
+    run(sys.executable, "-m", "uv", "pip", "install", *pins, f"{built}[workflow]", cwd=tmp_path)
     run("env/bin/impactlab", "new", "mine", cwd=tmp_path)
     run("snakemake", "--cores", "all", cwd=tmp_path)
     assert (tmp_path / "mine" / "results" / "velocity" / "report.html").exists()
