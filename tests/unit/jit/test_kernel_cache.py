@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import numba
 import pytest
@@ -173,6 +174,51 @@ def test_a_file_half_written_by_a_killed_process_is_not_read(call, tmp_path):
     file.rename(file.with_name(f"{file.name}.{32 * 'a'}"))
     assert printed(call()) == (["6.0", "0"], "")
     assert printed(call()) == (["6.0", "1"], "")
+
+
+SOLVE = """
+import hashlib
+import impactlab as il
+from impactlab.simulate import run_dataset
+from impactlab.solver.kernels import kernel_of
+grid = il.Discretisation(nodes=21, points=5)
+run = run_dataset(il.paper_impact(20.0), grid, duration=1e-3)
+assert run.plastic_dissipation > 0
+bits = b"".join(run[name].values.tobytes() for name in sorted(run.variables))
+print(hashlib.sha256(bits).hexdigest(), len(kernel_of(0, 0).stats.cache_hits))
+"""
+
+
+@pytest.mark.long
+def test_every_process_has_the_same_bits(tmp_path):
+    """The first, one that starts at once, a second checkout, and one with numba's public options.
+
+    Beam and contact yield. The last compiles for itself; of the others one does.
+    """
+    package = Path(jit.__file__).parents[1]
+    roots = [package.parent, tmp_path / "checkout"]
+    ignored = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(package, roots[1] / package.name, ignore=ignored)
+
+    def start(root, **settings):
+        env = os.environ | {"PYTHONPATH": str(root), "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+        return subprocess.Popen(
+            [sys.executable, "-c", SOLVE],
+            cwd=tmp_path,
+            env=env | settings,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    started = [start(root) for root in roots]
+    out = [printed(process)[0] for process in started]
+    (file,) = (tmp_path / "cache").rglob("*.kernels.euler_bernoulli-*.kernel")
+    compiled_once = file.stat().st_mtime_ns
+    out.append(printed(start(roots[1]))[0])
+    assert file.stat().st_mtime_ns == compiled_once
+    assert out == [[out[0][0], "1"]] * 3
+    assert printed(start(roots[0], IMPACTLAB_PLAIN_NUMBA="1"))[0] == [out[0][0], "0"]
 
 
 def test_kernels_of_one_call_are_compiled_together(tmp_path, monkeypatch):

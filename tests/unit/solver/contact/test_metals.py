@@ -153,6 +153,7 @@ def test_dents_of_metals_that_yield_in_reverse_are_those_of_the_finite_elements(
     assert max(reversals) > 0.9 * metals.LARGEST_REVERSAL
     rms = np.sqrt(np.bincount(group, missed**2) / np.bincount(group))
     assert (rms < [0.01, 0.012, 0.01, 0.02]).all()
+    assert abs(missed[group < 3]).max() < 0.03
     assert abs(missed).max() < 0.036
     assert abs(np.mean(recovered[group > 1])) < 0.006
 
