@@ -58,26 +58,28 @@ EXCEPTIONS = {
 """Misses without a mark, and their limits in %."""
 LARGEST_ERRORS = {
     "narrow": {
-        "peak_force": 0.8,
-        "contact_duration": 0.8,
+        "peak_force": 0.82,
+        "contact_duration": 1.0,
         "maximum_indentation": 0.6,
-        "permanent_indentation": 1.3,
+        "permanent_indentation": 1.5,
     },
     "deep dent": {
-        "peak_force": 1.2,
-        "contact_duration": 1.2,
-        "maximum_indentation": 0.6,
-        "permanent_indentation": 1.3,
+        "peak_force": 1.3,
+        "contact_duration": 1.4,
+        "maximum_indentation": 1.0,
+        "permanent_indentation": 1.7,
     },
     "reversed": {
-        "peak_force": 0.7,
-        "contact_duration": 0.9,
+        "peak_force": 0.8,
+        "contact_duration": 1.7,
         "maximum_indentation": 0.5,
-        "permanent_indentation": 1.1,
+        "permanent_indentation": 1.7,
     },
 }
-"""Root mean squares of the differences from 3-D but for the exceptions, in %, of narrow beams, of
-deep dents and of contacts that yield in reverse."""
+"""Root mean squares of the differences from 3-D, in %, of narrow beams, of deep dents and of
+contacts that yield in reverse."""
+APART = "narrow 16", "contact_duration"
+"""Held by its own limit: with it the durations of narrow beams would be 1.13 % off."""
 
 
 @pytest.fixture(scope="module")
@@ -136,10 +138,9 @@ def test_contacts_of_any_metal_are_as_in_3d(kind, metals):
             differences[name] = run[responses].to_array("response").to_series() / answers[responses]
     errors = 100.0 * (pd.DataFrame(differences, dtype=float).T - 1.0)
     assert len(errors) > (30 if kind == "reversed" else 40)
-    for (name, response), limit in EXCEPTIONS.items():
-        if name in errors.index and response in responses:
-            assert abs(errors.loc[name, response]) < limit, (name, response)
-            errors.loc[name, response] = np.nan
+    if kind == "narrow":
+        assert abs(errors.loc[APART]) < EXCEPTIONS[APART]
+        errors.loc[APART] = np.nan
     for response, limit in LARGEST_ERRORS[kind].items():
         assert (errors[response] ** 2).mean() ** 0.5 < limit, response
 
