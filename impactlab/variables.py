@@ -125,7 +125,7 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "shallow_dent": (
         outputs.SHALLOW_DENT,
-        "the dent is below 0.22 of the indentation and may be off by 7 %",
+        "the dent is below 0.04 of the indentation and may be off by 10 %",
     ),
     "struck_near_end": (
         outputs.STRUCK_NEAR_END,

@@ -7,7 +7,8 @@ The first solves its part of a designed sample with sphere_indentation.py and ap
 indentation.csv beside this file: `all` and `deep` take an hour together on two cores, `soft` an
 hour more, `shallow` half an hour, `hardened` and `reversed` a quarter each. `deeper`, 40 minutes,
 has indentations of 0.02 to 0.05 R and a file of its own, deeper.csv, for it was solved after the
-fit, which tests hold against it; `tails`, 25 minutes, goes into reversal.csv. The second fits
+fit, which tests hold against it; `tails`, 25 minutes, goes into reversal.csv, and `first dents`,
+three quarters of an hour, into first_dents.csv, which first_dents.py fits. The second fits
 indentation.csv and the finer data of two equal metals (impactlab/solver/contact/
 finite_element.csv), prints the errors of the fit and of runs held out (ten parts), and writes the
 coefficients to impactlab/solver/contact/metals.py, which says what they are.
@@ -27,7 +28,9 @@ data. What reversed yielding adds is fitted by reversal.py to the same unloading
 reversal.csv, which goes on to 0.3 % of the force and to z = 3.6: 18 metals of the other designs or
 near them (30 or 40 elements), the design `tails`, of much kinematic hardening below spheres that
 are hardly softer than the hardened flat, and 46 to 54, metals of 3-D impacts deep in metals that
-harden little. The coefficients of the rest were fitted with an earlier form of it.
+harden little. The coefficients of the rest were fitted with an earlier form of it. In
+first_dents.csv, 46 to 49 are two metals of E*/S_y = 400 and 1,000, one of a low Poisson's ratio
+about x = 1 and one that hardens.
 """
 
 from __future__ import annotations
@@ -49,6 +52,8 @@ HERE = Path(__file__).parent
 DATA = HERE / "indentation.csv"
 AFTER = HERE / "deeper.csv"
 REVERSED = HERE / "reversal.csv"
+FIRST_DENTS = HERE / "first_dents.csv"
+FILES = {"deeper": AFTER, "tails": REVERSED, "first dents": FIRST_DENTS}
 MODULE = Path(metals.__file__)
 FINE = MODULE.with_name("finite_element.csv")
 LARGEST_DEPTH = 0.022
@@ -63,7 +68,8 @@ class Design(NamedTuple):
     none; kinematic: the least share of it;
     depths: the largest over LARGEST_DEPTH, and the least over it, None for 6 delta_y; deepest: the
     largest in delta_y; last: the force at which unloading ends, over the largest; hardened: the
-    largest flow stress of the flat over the sphere's.
+    largest flow stress of the flat over the sphere's; tops: the flat is unloaded from the largest
+    indentation, and from that over the first or from the second, in delta_y, if that is more.
     """
 
     first: int
@@ -78,6 +84,7 @@ class Design(NamedTuple):
     deepest: float = math.inf
     last: float = 0.03
     hardened: float = math.inf
+    tops: tuple[float, float] = (5.0, 2.0)
 
 
 DESIGNS = {
@@ -89,6 +96,9 @@ DESIGNS = {
     "reversed": Design(273, 16, 15, 20, 60, (100, 12), 0.5, 0.6, (0.9, 0.2)),
     "deeper": Design(293, 32, 17, 24, 90, (60, 25), 1.5, 0.0, (2.2, 0.45)),
     "tails": Design(18, 48, 19, 24, 80, (300, 5), 0.4, 0.85, (1.5, 0.2), math.inf, 0.003, 1.25),
+    "first dents": Design(
+        0, 46, 21, 40, 40, (60, 2.5), 2.0, 0.0, (1.0, 0.22), 6.5, 0.01, tops=(1.7, 1.3)
+    ),
 }
 BIAS = 0.004
 """Share by which 20 elements over the radius of contact make the force too small in the mean."""
@@ -138,15 +148,16 @@ def cases(design: Design) -> Iterator[dict[str, float]]:
 
 def solve(name: str, part: int, parts: int) -> None:
     """Solve every `parts`-th case of a design and append its rows to the data."""
-    design, data = DESIGNS[name], {"deeper": AFTER, "tails": REVERSED}.get(name, DATA)
+    design, data = DESIGNS[name], FILES.get(name, DATA)
     for number, options in enumerate(cases(design)):
         if number % parts != part:
             continue
         depth = options["depth"]
+        first = max(depth / design.tops[0], design.tops[1])
         run = design.first + number
         output = data.with_suffix(f".{run}.csv")
         words = [f"--{option}={value:.5g}" for option, value in options.items()]
-        words += ["--unload", f"{max(depth / 5, 2):.5g}", f"{depth:.5g}", "--round"]
+        words += ["--unload", *(f"{top:.5g}" for top in (first, depth)), "--round"]
         words += ["--last", f"{design.last:g}"]
         script = str(HERE / "sphere_indentation.py")
         subprocess.run([sys.executable, script, str(output), *words], check=True)

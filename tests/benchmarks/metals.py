@@ -25,10 +25,11 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import xarray as xr
-from agreement import RESPONSES, ROOT, differences, mean_solid
+from agreement import ELASTIC, RESPONSES, ROOT, differences, mean_solid
 from scipy.stats import qmc
 
 import impactlab as il
+from impactlab.fem3d.solver.estimates import contact_radius
 from impactlab.variables import STATUS_FLAGS, WARNINGS
 
 CHOSEN: dict[str, tuple[float, dict[str, dict[str, float]]]] = {
@@ -103,6 +104,12 @@ MESHES = 6.0, 6.5
 DESIGNS = {35: 28, 136: 32, 271: 16, 613: 16}
 """Cases of each Sobol design by its seed; of all but the first, those without a mark are solved."""
 NARROW_MESHES = 8.0, 8.5
+SHALLOW_MESHES = (6.0,)
+SHALLOW = 0.24
+"""Dent over indentation below which the dent of the same impact on bodies that do not yield is
+taken off. In 3-D the section, bent and in waves, is thicker under the sphere than later on, by 1 to
+3 % of the indentation: without that, dents of a seventh change by 4 % with how long the run goes
+on, and by 5 % from 5 to 10 elements over the radius, and with it by 0.2 and 1 %."""
 SOLVED_FILE = Path(__file__).with_name("solved_impacts.csv")
 SOLVED = pd.read_csv(SOLVED_FILE, index_col="impact")
 """Rows of Sobol designs: narrow beams, deeper than wide, with a contact radius above 0.28 of half
@@ -200,6 +207,8 @@ def row(name: str, impact: il.Impact, meshes: Sequence[float]) -> dict[str, obje
     try:
         duration = 1.1 * float(beam.contact_duration)
         solid, spread = mean_solid(impact, duration, meshes, name.replace("/", " per "))
+        if float(solid.permanent_indentation) < SHALLOW * float(solid.maximum_indentation):
+            solid["permanent_indentation"] -= elastic_dent(impact, duration, meshes, name)
     except ValueError as error:  # the contact is too wide for a 3-D mesh
         print(name, error)
         return case | {"marks": marks(beam)}
@@ -210,6 +219,16 @@ def row(name: str, impact: il.Impact, meshes: Sequence[float]) -> dict[str, obje
     return case | apart | {"marks": marks(beam)}
 
 
+def elastic_dent(impact: il.Impact, duration: float, meshes: Sequence[float], name: str) -> float:
+    """Return what 3-D has as the dent (m) where nothing yields, on meshes of the same size."""
+    stress = {"yield_stress": ELASTIC}
+    metal = stress | {f"{kind}_hardening_modulus": 0.0 for kind in ("isotropic", "kinematic")}
+    elastic = _changed(impact, {"beam": metal, "sphere": stress})
+    finer = contact_radius(elastic) / contact_radius(impact)
+    meshes = [elements * finer for elements in meshes]
+    return float(mean_solid(elastic, duration, meshes, f"{name}, elastic")[0].permanent_indentation)
+
+
 def main(meshes: Sequence[float]) -> None:
     """Solve and tabulate."""
     rows = []
@@ -217,7 +236,8 @@ def main(meshes: Sequence[float]) -> None:
     for name, impact in (*chosen(), *designed(), *solved()):
         if name in later and marks(il.simulate(impact, GRID, duration=4e-3)):
             continue
-        sizes = NARROW_MESHES if name.startswith("narrow") else MESHES
+        kinds = {"narrow": NARROW_MESHES, "shallow": SHALLOW_MESHES}
+        sizes = kinds.get(name.split()[0], MESHES)
         rows.append(row(name, impact, meshes or sizes))
         table = pd.DataFrame(rows)
         table = table.drop(columns="3-D", errors="ignore")

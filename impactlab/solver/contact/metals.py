@@ -18,6 +18,11 @@ is above z_0 = 0.29 (1 - 0.51 u + 0.59 v). With e = z - z_0, and D the dent over
 otherwise, what is recovered is longer by L = 0.18 e^2 D/(e + 0.012 D/share^2) of itself, and the
 exponent larger by 2.24 L/(1 + 0.53 L) (tests/benchmarks/reversal.py).
 
+A body begins to yield where x_0 = y^2, or (y S_other/S)^2, with y(nu) by von Mises below a Hertzian
+contact. A few first yields deep, the dent over the indentation is d, with d^2.3 the sum over both
+bodies of (A exp(0.35 w_0) w_0^p)^2.3, w_0 = 1 - sqrt(x_0/x), where A = 0.55 share^0.22 exp(-0.96 q)
+and p = 1.63 - 0.24 ln share are of that body (tests/benchmarks/first_dents.py).
+
 Fitted by tests/benchmarks/contact_law.py, which says to what, and writes them here. Beyond the
 data the numbers are held at their ends.
 """
@@ -39,6 +44,13 @@ LEAST_REVERSAL, LARGEST_REVERSAL = (0.29, -0.51, 0.59), 2.7
 """Factors of z_0, and z at which it is held: there its data end, and beyond it runs are marked."""
 REVERSED_RECOVERY, REVERSED_EXPONENT = (0.18, 0.012), (2.24, 0.53)
 """Factors of L and of what it adds to the exponent."""
+FIRST_YIELD = 0.97744, 0.72573, 0.34947, 0.13914
+"""Of y, a cubic in nu - 0.3 within 5e-5 of the least peak pressure over 1.65 S that brings the von
+Mises stress on the axis of a Hertzian contact (Johnson 1985, Eq. 3.45) to S."""
+FIRST_DENT, FIRST_DENT_POWER, FIRST_DENT_GROWTH = (-0.589, 0.218, -0.961), (1.627, -0.241), 0.352
+"""Factors of ln A, of p, and in the exponential."""
+BOTH_BODIES = 2.3
+"""Power in which the dents of both bodies are summed."""
 LARGEST_HARDENED = 2.0
 """Hardened flow stress under the contact over the other body's yield stress, beyond which runs are
 marked: that body then yields more than in the data; at 4.2 the force is 8 % too large."""
@@ -128,6 +140,29 @@ def hardened(q: float, x: float) -> float:
 
 
 @compiled
+def first_yield(nu: float) -> float:
+    """Return sqrt(delta/delta_y) at which a body under a harder one begins to yield."""
+    v = nu - 0.3
+    c = FIRST_YIELD
+    return c[0] + v * (c[1] + v * (c[2] + v * c[3]))
+
+
+@compiled
+def first_dent(root: float, shape: Shape) -> float:
+    """Return the dent over the indentation, a few first yields deep.
+
+    root: 1/sqrt(x).
+    """
+    total = 0.0
+    for body in (32, 35):
+        w = 1.0 - shape[body] * root
+        if w > 0.0:
+            dent = math.exp(shape[body + 1] + FIRST_DENT_GROWTH * w) * w ** shape[body + 2]
+            total += dent**BOTH_BODIES
+    return float(total ** (1.0 / BOTH_BODIES))
+
+
+@compiled
 def shape(
     yield_ratio: float,
     share: float,
@@ -137,6 +172,8 @@ def shape(
     hardness: float,
 ) -> Shape:
     """Return the coefficients of the curve of two metals, q, those of z, L and circle, S/S_other.
+
+    And of both bodies y, times S_other/S of the harder one, ln A and p.
 
     yield_ratio: E*/S_y of the softer metal; share: of the compliance 1/E* that is its own; nu: its
     Poisson's ratio; hardening: its hardening moduli over Young's; kinematic: share of the latter;
@@ -153,6 +190,7 @@ def shape(
     strain = (1.0, m, m * u, m * v, m * t, m * T, m * m * T)
     hardened = (1.0, u, v, t, k, k * u, k * t, t * t, t * u)
     q = hardening * (1.0 - nu * nu) / share
+    own, others = math.log(share), math.log(1.0 - share)
     row = int(np.int64(0))  # rows that are literals would be types, and `_sum` compiled for each
     # written out: kernels have no arrays of their own
     return (
@@ -188,6 +226,12 @@ def shape(
         REVERSED_RECOVERY[1] / (share * share),
         SUNK_IN[0] * max(1.0 - SUNK_IN[1] * t, 0.0),
         1.0 / hardness,
+        first_yield(nu),
+        FIRST_DENT[0] + FIRST_DENT[1] * own + FIRST_DENT[2] * q,
+        FIRST_DENT_POWER[0] + FIRST_DENT_POWER[1] * own,
+        FIRST_YIELD[0] * hardness,
+        FIRST_DENT[0] + FIRST_DENT[1] * others,
+        FIRST_DENT_POWER[0] + FIRST_DENT_POWER[1] * others,
     )
 
 
@@ -206,5 +250,9 @@ LIKE_METALS: Shape = (
     *(STRAIN[:, 0] + STRAIN[:, 1] * 100.0 / 333.0).tolist(),
     *HARDENING[:, 0].tolist(),
     *(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    FIRST_YIELD[0],
+    FIRST_DENT[0] + FIRST_DENT[1] * math.log(0.5),
+    FIRST_DENT_POWER[0] + FIRST_DENT_POWER[1] * math.log(0.5),
+    *(math.inf, 0.0, 0.0),
 )
 """Of a flat and an elastic sphere of the same modulus, E*/S_y = 333, which do not harden."""

@@ -77,7 +77,8 @@ def finite_element(d: float, E: float, R: float, S: float, nu: float) -> float:
     w, root, terms, strain = _fit(end, E, R, S, nu)
     powers = (w**2, w**3, w**4, w**5, 2.0 * w**2 * math.log(root))
     exponent = math.fsum(map(math.prod, zip(terms[:5], powers, strict=True)))
-    return hertz(end, E, R, S, nu) * math.exp(exponent + strain[0] * w * root) * d / end
+    bend = min(exponent + strain[0] * w * root, 0.0)
+    return hertz(end, E, R, S, nu) * math.exp(bend) * d / end
 
 
 def _largest(E: float, R: float, S: float) -> float:
@@ -185,17 +186,24 @@ def jackson_unloading(d: float, F: float, E: float, R: float, S: float, nu: floa
 
 def finite_unloading(d: float, F: float, E: float, R: float, S: float, nu: float) -> Unloading:
     """Return the fit to finite elements for two like metals."""
-    d_y = R * (0.825 * math.pi * S / E) ** 2
-    if d <= d_y:
+    v, d_y = nu - 0.3, R * (0.825 * math.pi * S / E) ** 2
+    first = 0.97744 + 0.72573 * v + 0.34947 * v**2 + 0.13914 * v**3
+    if d <= d_y * min(first, 1.0) ** 2:
         return F, 0.0, 1.5
     w, root, terms, strain = _fit(min(d, _largest(E, R, S)), E, R, S, nu)
+    late, w = max(1.0 - first / root, 0.0), max(w, 0.0)
     powers = (w**2, w**3, w**4, 2.0 * w**2 * math.log(root))
     shares, exponents = (
         math.fsum(map(math.prod, zip(terms[i : i + 4], powers, strict=True))) for i in (5, 9)
     )
     share = 1.0 + 0.36 * w + shares + strain[1] * w**2 * root
     n = 1.5 - 0.074 * w + exponents + strain[2] * w**2 * root
-    return F, d - share * d_y * math.sqrt(F / hertz(d_y, E, R, S, nu)), n
+    dent = d - share * d_y * math.sqrt(F / hertz(d_y, E, R, S, nu))
+    early = np.interp(late, (0.35, 0.5), (1.0, 0.0))
+    shallow = math.exp(-0.589 + 0.352 * late) * late**1.627
+    shallow *= 0.5**0.218 * late ** (-0.241 * math.log(0.5))
+    n += early * (1.5 - min(2.0 * shallow, 0.23 * math.sqrt(shallow)) - n)
+    return F, dent + early * (d * shallow - dent), float(n)
 
 
 def thornton_unloading(d: float, F: float, E: float, R: float, S: float, nu: float) -> Unloading:

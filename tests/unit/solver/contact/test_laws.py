@@ -80,8 +80,14 @@ def test_force_and_unloading_are_those_of_the_formulas(law, bodies):
 @every_law
 @every_pair
 def test_hertz_until_first_yield(law, bodies):
-    """Other ratios of Poisson than that of the record move first yield by less than a tenth."""
-    below = [(0.999 if bodies == STEEL else 0.9) * first_yield(law, bodies)]
+    """Other ratios of Poisson than that of the record move first yield by less than a tenth.
+
+    The fit to finite elements has a dent from where the von Mises stress reaches the yield stress.
+    """
+    share = 0.999 if bodies == STEEL else 0.9
+    if law == "finite_element":
+        share = 0.999 * min(metals.first_yield(bodies[3]), 1.0) ** 2
+    below = [share * first_yield(law, bodies)]
     np.testing.assert_allclose(along(law, bodies, below), along("hertz", bodies, below), rtol=1e-14)
 
 
