@@ -26,7 +26,7 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 START = -0.5, 0.2, -1.0, 1.7, -0.25, 0.2
 """Factors of ln A, of p, and in the exponential."""
 LEAST = 0.03
-GROUPS = 0.0, 0.015, 0.04, 0.1, 0.22, 0.4
+GROUPS = 0.0, 0.015, 0.06, 0.1, 0.22, 0.4
 
 
 class Dent(NamedTuple):

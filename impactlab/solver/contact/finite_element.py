@@ -81,8 +81,8 @@ LARGEST_FORCE = 0.5
 deep as wide: on soft ones (E*/S_y above 700) it is 5 % too large at 0.6."""
 FIRST_DENTS = 0.35, 0.5
 """Values of e: dents have a fit of their own up to the first, and a share of it up to the second."""
-LEAST_DENT = 0.04
-"""Dent over indentation: the data of shallower ones are met within 14 %, not 5 %."""
+LEAST_DENT = 0.06
+"""Dent over indentation: the data of shallower ones are met within 14 %, those of others within 5 %."""
 
 
 @compiled
