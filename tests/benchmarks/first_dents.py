@@ -13,6 +13,7 @@ indentation.
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -110,7 +111,7 @@ def main() -> None:
     group = np.digitize(known, GROUPS)
     for name, answers in laws.items():
         off = 100.0 * (answers / known - 1.0)
-        for number, (low, high) in enumerate(zip(GROUPS[:-1], GROUPS[1:], strict=True), 1):
+        for number, (low, high) in enumerate(pairwise(GROUPS), 1):
             part = off[group == number]
             print(f"{name}, {low:g} to {high:g}: {np.sqrt((part**2).mean()):.1f} % rms", end=", ")
             print(f"{np.abs(part).max():.1f} % at most, of {len(part)}")

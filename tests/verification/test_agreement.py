@@ -75,9 +75,15 @@ LARGEST_ERRORS = {
         "maximum_indentation": 0.5,
         "permanent_indentation": 1.7,
     },
+    "shallow": {
+        "peak_force": 0.45,
+        "contact_duration": 0.3,
+        "maximum_indentation": 0.4,
+        "permanent_indentation": 4.0,
+    },
 }
-"""Root mean squares of the differences from 3-D, in %, of narrow beams, of deep dents and of
-contacts that yield in reverse."""
+"""Root mean squares of the differences from 3-D, in %, of narrow beams, of deep dents, of contacts
+that yield in reverse and of shallow dents, which have a mark."""
 APART = "narrow 16", "contact_duration"
 """Held by its own limit: with it the durations of narrow beams would be 1.13 % off."""
 
@@ -125,7 +131,7 @@ def test_cases_without_a_mark_meet_the_target():
 def test_contacts_of_any_metal_are_as_in_3d(kind, metals):
     """One error is larger without any part of what a narrow beam's sides do to its contact.
 
-    Or of what reversed yielding adds.
+    Or of what reversed yielding adds, or without the fit of shallow dents.
     """
     grid, responses = il.Discretisation(nodes=101), list(LARGEST_ERRORS[kind])
     differences = {}
@@ -134,10 +140,10 @@ def test_contacts_of_any_metal_are_as_in_3d(kind, metals):
             continue
         answers = metals.SOLVED.loc[name]
         run = il.simulate(impact, grid, duration=1.1 * answers.contact_duration)
-        if not metals.marks(run):
+        if kind == "shallow" or not metals.marks(run):
             differences[name] = run[responses].to_array("response").to_series() / answers[responses]
     errors = 100.0 * (pd.DataFrame(differences, dtype=float).T - 1.0)
-    assert len(errors) > (30 if kind == "reversed" else 40)
+    assert len(errors) > {"reversed": 30, "shallow": 8}.get(kind, 40)
     if kind == "narrow":
         assert abs(errors.loc[APART]) < EXCEPTIONS[APART]
         errors.loc[APART] = np.nan

@@ -98,14 +98,14 @@ def test_an_input_outside_the_data_of_the_contact_law_is_named(cause, inside, ou
 def test_a_dent_that_is_shallow_beside_the_indentation_is_remarked():
     bit = WARNINGS["shallow_dent"][0]
     for velocity, contact, remarked in (
-        (0.02, DEFAULT_LAW.contact, True),
-        (0.04, DEFAULT_LAW.contact, False),
-        (0.02, "jackson_green", False),
+        (0.05, DEFAULT_LAW.contact, True),
+        (0.5, DEFAULT_LAW.contact, False),
+        (0.05, "jackson_green", False),
     ):
         run = il.simulate(
-            replace(DEFAULT_LAW, velocity=velocity, contact=contact), GRID, duration=1e-3
+            replace(DEFAULT_LAW, velocity=velocity, contact=contact), GRID, duration=3e-3
         )
-        assert (0.0 < run.permanent_indentation < 0.06 * run.maximum_indentation) or not remarked
+        assert (0.0 < run.permanent_indentation < 0.2 * run.maximum_indentation) or not remarked
         assert bool(run.remarks.item() & bit) == remarked
 
 

@@ -186,7 +186,7 @@ def test_dents_a_few_first_yields_deep_are_those_of_the_finite_elements():
             missed.append(delta_r / delta_y / top / dents[-1] - 1.0)
             x, F = [dents[-1] * top, *branch.x[::-1], top], [0.0, *branch.F[::-1], peak]
             works.append((top - delta_r / delta_y) * peak / (n + 1.0) / np.trapezoid(F, x) - 1.0)
-    missed, group = np.array(missed), np.digitize(dents, [0.015, finite_element.LEAST_DENT, 0.1])
+    missed, group = np.array(missed), np.digitize(dents, [0.015, 0.06, 0.1])
     assert np.bincount(group)[1:].min() > 8
     rms = np.sqrt(np.bincount(group, missed**2) / np.bincount(group))
     assert (rms < [0.08, 0.03, 0.015, 0.016]).all()
