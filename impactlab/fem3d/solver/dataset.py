@@ -150,7 +150,7 @@ _COMMENTS = {
     "peak_plastic_strain": "of the beam, the contact included, where it grows with finer meshes",
     "plastic_dissipation": "in all of beam and sphere, the contact included",
     "permanent_indentation": "mean of what the surfaces keep of the indentation from the last "
-    "contact to the end: vibrations that go on until then leave a part of themselves",
+    "contact to the end: bending and vibrations that go on until then leave a part of themselves",
     "number_of_contacts": "without pauses in which a wave does not cross the patch twice there and "
     "back",
     "sphere_displacement": "of the sphere's centre of mass",

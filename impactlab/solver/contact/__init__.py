@@ -239,7 +239,7 @@ _REGISTRY = (
             "hardening up to 0.05 of Young's modulus, a third to ten times less stiff than the "
             "other"
         ),
-        yield_pressure=1.65,
+        yield_pressure=1.6128,
     ),
     LawRecord(
         name="hunt_crossley",

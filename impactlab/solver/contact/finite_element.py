@@ -13,8 +13,9 @@ delta_y and F_y (th = 1.1), w = 1 - 1/sqrt(x), log = ln x, Q = q sqrt(x) w/(1 + 
                n = 1.5 + n_0 w + w^2 (...) + Q (...)
 The coefficients and q follow from the metals, and so does what both gain where unloading yields in
 reverse (metals.py). tests/benchmarks/contact_law.py fits them
-and prints how well. A few first yields deep, with e = 1 - sqrt(x_0/x) below 0.35, metals.py has the
-dent d over the indentation, and n = 1.5 - min(2 d, 0.23 sqrt(d)); up to 0.5, both are between.
+and prints how well. A few first yields deep, where w_0 = 1 - sqrt(x_0/x) is below 0.35, the dent
+over the indentation is d of metals.py, and n = 1.5 - min(2 d, 0.23 sqrt(d)); up to w_0 = 0.5 both
+go over into the above in proportion.
 
 Between the faces of a beam metal flows more easily than in a half-space, with the contact radius a
 and the beam's crowding by its sides, c, and in its depth, d (0: a half-space)
@@ -80,7 +81,7 @@ LARGEST_FORCE = 0.5
 """Contact force over yield stress times section, for the corrections, of beams at least half as
 deep as wide: on soft ones (E*/S_y above 700) it is 5 % too large at 0.6."""
 FIRST_DENTS = 0.35, 0.5
-"""Values of e: up to the first, dents have a fit of their own, from the second on that of all."""
+"""w_0 up to which dents have a fit of their own, and from which on they have that of all depths."""
 LEAST_DENT = 0.22
 """Dent over indentation: shallower ones are up to 7 % less deep than in 3-D, and data of those
 below 0.06 are met within 14 %."""
