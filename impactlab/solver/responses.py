@@ -149,7 +149,8 @@ def read_inputs(answer: Record, case: Record, contact: Record, pair: Pair) -> No
     if corrected or pair.compliance != 0.0:
         read_size(answer, case, contact, pair)
     x = contact.delta_m / yield_indentation(pair.E, pair.R, S_y)
-    if not (x > 1.0 and (corrected or pair.law == _FINITE_ELEMENT)):
+    is_fit = pair.law == _FINITE_ELEMENT
+    if not ((x > 1.0 and (corrected or is_fit)) or (is_fit and contact.delta_r > 0.0)):
         return
     if not LEAST_RATIO <= pair.E / S_y <= LARGEST_RATIO:
         answer.remarks |= YIELD_RATIO_OUTSIDE_DATA

@@ -5,7 +5,7 @@ half-space, without friction, with finite strains: over the metals of both, of w
 Its data are in finite_element.csv (two like metals, E*/S_y = 333, fine) and in
 tests/benchmarks/indentation.csv (a designed sample, coarser). x = delta/delta_y with Stronge's
 delta_y and F_y (th = 1.1), w = 1 - 1/sqrt(x), log = ln x, Q = q sqrt(x) w/(1 + 0.15 q sqrt(x)):
-    x <= x_0   Hertz; also between x_0 and 1, but for a dent
+    x <= 1     Hertz, with a dent from x_0 on (metals.py; of the body that yields first)
     loading    F = F_y x^1.5 exp(w^2 (g_0 + g_1 w + g_2 w^2 + g_3 w^3 + g_4 log) + g_5 w sqrt(x)
                    + Q (h_0 + h_1 w + h_2 log)), at most Hertz's
     unloading  F = F_m ((delta - delta_r)/(delta_m - delta_r))^n,
@@ -169,8 +169,9 @@ def curve(
     if max(crowding) > 0.0:
         area = R * min(delta, end) * _circle(log, w, shape[25] * s, shape)
         share = 1.0 / (1.0 + _crowded(crowding, area, x, w, shape))
-        root = math.sqrt(share)
-        F, recovered, n = F * share, recovered * math.sqrt(root), max(n * root, 1.0)
+        F *= share
+        if first * root < 1.0:
+            recovered, n = recovered * math.sqrt(math.sqrt(share)), max(n * math.sqrt(share), 1.0)
     if delta > end:
         F, recovered = F * delta / end, recovered * math.sqrt(delta / end)
     return F, F / recovered**n, delta - recovered, n

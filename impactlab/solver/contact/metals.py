@@ -18,10 +18,11 @@ is above z_0 = 0.29 (1 - 0.51 u + 0.59 v). With e = z - z_0, and D the dent over
 otherwise, what is recovered is longer by L = 0.18 e^2 D/(e + 0.012 D/share^2) of itself, and the
 exponent larger by 2.24 L/(1 + 0.53 L) (tests/benchmarks/reversal.py).
 
-A body begins to yield where x_0 = y^2, or (y S_other/S)^2, with y(nu) by von Mises below a Hertzian
-contact. A few first yields deep, the dent over the indentation is d, with d^2.3 the sum over both
-bodies of (A exp(0.35 w_0) w_0^p)^2.3, w_0 = 1 - sqrt(x_0/x), where A = 0.55 share^0.22 exp(-0.96 q)
-and p = 1.63 - 0.24 ln share are of that body (tests/benchmarks/first_dents.py).
+The softer body begins to yield at x = x_0 = y^2, with y(nu) by von Mises below a Hertzian contact,
+the harder one at (y S_other/S)^2. A few first yields deep, the dent over the indentation is d, with
+d^2.3 the sum over both bodies of (A exp(0.35 w_0) w_0^p)^2.3, w_0 = 1 - sqrt(x_0/x), where
+A = 0.55 share^0.22 exp(-0.96 q) and p = 1.63 - 0.24 ln share have the body's own share of the
+compliance; q is 0 and nu 0.3 for the harder one (tests/benchmarks/first_dents.py).
 
 Fitted by tests/benchmarks/contact_law.py, which says to what, and writes them here. Beyond the
 data the numbers are held at their ends.
@@ -45,8 +46,8 @@ LEAST_REVERSAL, LARGEST_REVERSAL = (0.29, -0.51, 0.59), 2.7
 REVERSED_RECOVERY, REVERSED_EXPONENT = (0.18, 0.012), (2.24, 0.53)
 """Factors of L and of what it adds to the exponent."""
 FIRST_YIELD = 0.97744, 0.72573, 0.34947, 0.13914
-"""Of y, a cubic in nu - 0.3 within 5e-5 of the least peak pressure over 1.65 S that brings the von
-Mises stress on the axis of a Hertzian contact (Johnson 1985, Eq. 3.45) to S."""
+"""Coefficients of y, a cubic in nu - 0.3: within 5e-5, the peak pressure over 1.65 S at which the
+von Mises stress on the axis of a Hertzian contact (Johnson 1985, Eq. 3.45) is S."""
 FIRST_DENT, FIRST_DENT_POWER, FIRST_DENT_GROWTH = (-0.589, 0.218, -0.961), (1.627, -0.241), 0.352
 """Factors of ln A, of p, and in the exponential."""
 BOTH_BODIES = 2.3
@@ -173,7 +174,7 @@ def shape(
 ) -> Shape:
     """Return the coefficients of the curve of two metals, q, those of z, L and circle, S/S_other.
 
-    And of both bodies y, times S_other/S of the harder one, ln A and p.
+    Last come sqrt(x_0), ln A and p of the softer body, then of the harder one.
 
     yield_ratio: E*/S_y of the softer metal; share: of the compliance 1/E* that is its own; nu: its
     Poisson's ratio; hardening: its hardening moduli over Young's; kinematic: share of the latter;

@@ -95,6 +95,19 @@ def test_an_input_outside_the_data_of_the_contact_law_is_named(cause, inside, ou
     assert remarks(outside, velocity=1e-5) & OUTSIDE_DATA == 0
 
 
+def test_metals_outside_the_data_are_named_from_the_first_dent_on():
+    """Which comes before delta_y, for metals of a low Poisson's ratio."""
+    metal = replace(DEFAULT_LAW.beam.material, poissons_ratio=0.02)
+    impact = replace(DEFAULT_LAW, beam=replace(DEFAULT_LAW.beam, material=metal))
+    bit = WARNINGS["poissons_ratio_outside_data"][0]
+    assert (
+        not il.simulate(replace(impact, velocity=0.005), GRID, duration=1e-3).remarks.item() & bit
+    )
+    run = il.simulate(replace(impact, velocity=0.01), GRID, duration=1e-3)
+    assert 0.0 < run.permanent_indentation < 0.02 * run.maximum_indentation
+    assert run.remarks.item() & bit
+
+
 def test_a_dent_that_is_shallow_beside_the_indentation_is_remarked():
     bit = WARNINGS["shallow_dent"][0]
     for velocity, contact, remarked in (
