@@ -173,7 +173,7 @@ def test_metal_yields_where_the_von_mises_stress_of_hertz_reaches_its_yield_stre
 
 
 def test_dents_a_few_first_yields_deep_are_those_of_the_finite_elements():
-    """Where F^0.675 of the last three forces vanishes, and what unloading gives back."""
+    """Dents end where F^0.675 of the last three forces vanishes; unloading gives back its work."""
     dents, missed, works = [], [], []
     for _, run in FIRST_DENTS.groupby("run"):
         of, S_y = shape_of(run.iloc[0]), E / run.E_over_S.iloc[0]
@@ -245,7 +245,7 @@ def test_no_metal_creates_energy(crowding):
         F, dent = F / (4.0 / 3.0 * E * np.sqrt(R) * delta_y**1.5), delta_r / delta_y
         work = 0.4 * 0.6**2.5 + cumulative_trapezoid(np.append(0.6**1.5, F), np.append(0.6, x))
         assert (np.diff(F) > 0.0).all()
-        assert (F * (x - dent) / (n + 1.0) <= work * (1.0 + 1e-12)).all(), (ratio, of)
+        assert (F * (x - dent) / (n + 1.0) <= work).all(), (ratio, of)
         assert (dent >= 0.0).all()
         assert (dent < x).all()
         assert ((n >= 1.0) & (n <= 4.5)).all()
