@@ -109,7 +109,7 @@ def _resist(extra: ResistedModes, case: Record, grid: BeamGrid, EI: float) -> No
             modes.D[p] = damped_turn(theta, r)
             modes.push[p] = modes.D[p] * flexibility
         elif r > 0.0:
-            modes.push[p] *= 0.5 * (1.0 - extra.decay[p]) / r
+            modes.push[p] *= -0.5 * math.expm1(-2.0 * r) / r
 
 
 @compiled
