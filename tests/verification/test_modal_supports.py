@@ -10,7 +10,6 @@ import impactlab as il
 from impactlab.model.beam_modes import mode_table
 from impactlab.model.case_table import case_table
 from impactlab.solve import fibre_section, solve
-from impactlab.solver import modal
 from impactlab.solver.beam import copies
 from impactlab.solver.contact.history import make_pair
 from impactlab.solver.flight import LEAST, MOST, bound_swing, leap_modes, make_tables
@@ -180,7 +179,7 @@ def test_yielding_has_leapfrogs_limit(left, right, place):
 
 @pytest.mark.parametrize(("left", "right", "place"), [*ENDS, ("clamped", "free", 0.9)])
 def test_leaps_of_any_modes_hide_no_event(left, right, place):
-    """Against single steps, yielding in flight and all: damping, however little, leaves no leaps."""
+    """Against single steps: with damping, however little, a beam does not leap."""
     leapt = yielding(left, right, place, 20.0)
     stepped = replace(leapt, beam=replace(leapt.beam, mass_damping=1e-30))
     grid = il.Discretisation(nodes=41, scheme="modal")
