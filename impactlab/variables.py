@@ -125,7 +125,7 @@ WARNINGS: dict[str, tuple[int, str]] = {
     ),
     "shallow_dent": (
         outputs.SHALLOW_DENT,
-        "the dent is below 0.22 of the indentation and may be off by 7 %, or 14 % below 0.06",
+        "the dent is below 0.06 of the indentation and may be off by 14 %",
     ),
     "struck_near_end": (
         outputs.STRUCK_NEAR_END,

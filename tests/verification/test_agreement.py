@@ -39,7 +39,7 @@ EXCEPTIONS = {
     ("deep dent 14", "permanent_indentation"): 4.0,
     ("deep dent 21", "peak_force"): 2.4,
     ("deep dent 34", "contact_duration"): 3.4,
-    ("deep dent 40", "peak_force"): 3.0,
+    ("deep dent 40", "peak_force"): 2.8,
     ("deep dent 40", "contact_duration"): 2.4,
     ("deep dent 44", "maximum_indentation"): 2.6,
     ("deep dent 44", "permanent_indentation"): 3.4,
@@ -54,6 +54,7 @@ EXCEPTIONS = {
     ("reversed 26", "peak_force"): 2.2,
     ("reversed 26", "contact_duration"): 4.3,
     ("reversed 26", "force_history"): 17.0,
+    ("shallow 13", "permanent_indentation"): 4.1,
 }
 """Misses without a mark, and their limits in %."""
 LARGEST_ERRORS = {
@@ -79,11 +80,11 @@ LARGEST_ERRORS = {
         "peak_force": 0.45,
         "contact_duration": 0.3,
         "maximum_indentation": 0.4,
-        "permanent_indentation": 4.0,
+        "permanent_indentation": 1.8,
     },
 }
 """Root mean squares of the differences from 3-D, in %, of narrow beams, of deep dents, of contacts
-that yield in reverse and of shallow dents, which have a mark."""
+that yield in reverse and of shallow dents."""
 APART = "narrow 16", "contact_duration"
 """Held by its own limit: with it the durations of narrow beams would be 1.13 % off."""
 
@@ -140,10 +141,10 @@ def test_contacts_of_any_metal_are_as_in_3d(kind, metals):
             continue
         answers = metals.SOLVED.loc[name]
         run = il.simulate(impact, grid, duration=1.1 * answers.contact_duration)
-        if kind == "shallow" or not metals.marks(run):
+        if not metals.marks(run):
             differences[name] = run[responses].to_array("response").to_series() / answers[responses]
     errors = 100.0 * (pd.DataFrame(differences, dtype=float).T - 1.0)
-    assert len(errors) > {"reversed": 30, "shallow": 8}.get(kind, 40)
+    assert len(errors) > {"reversed": 30, "shallow": 12}.get(kind, 40)
     if kind == "narrow":
         assert abs(errors.loc[APART]) < EXCEPTIONS[APART]
         errors.loc[APART] = np.nan

@@ -20,8 +20,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from impactlab.solver.contact import LAWS, finite_element
+from impactlab.solver.contact import LAWS, finite_element, metals
 from impactlab.solver.contact.metals import LIKE_METALS, shape
+from impactlab.solver.contact.stronge import yield_indentation
 from impactlab.solver.contact.switch import curve, radius
 from impactlab.solver.jit import compiled, inlined
 from impactlab.solver.strain_rate import RateLaw, rate_law
@@ -110,10 +111,10 @@ def make_pair(case: Record) -> Pair:
         rate = RateLaw(0.0, 0.0, 0.0)
     compliances = case.compliance, case.bending_compliance
     prestress = depth, case.stress_along, case.stress_across
-    metals = shape(E / S_y, share, nu, hardening, kinematic, hardness)
+    curve_shape = shape(E / S_y, share, nu, hardening, kinematic, hardness)
     hardest = case.sphere_yield_stress
     return Pair(
-        case.contact, E, R, S_y, nu, *compliances, prestress, metals, crowding, rate, hardest
+        case.contact, E, R, S_y, nu, *compliances, prestress, curve_shape, crowding, rate, hardest
     )
 
 
@@ -155,6 +156,15 @@ def sideways(contact: Record, pair: Pair) -> float:
     S_y = yield_stress(contact, pair)
     share = finite_element.sideways(contact.delta_m, pair.E, pair.R, S_y, pair.shape, pair.crowding)
     return float(share)
+
+
+@compiled
+def softer_share(contact: Record, pair: Pair, S_y: float) -> float:
+    """Return the share of the softer body in what both yield; S_y: as of `pair_curve`."""
+    if pair.law != _OF_METALS:
+        return 1.0
+    x = contact.delta_m / yield_indentation(pair.E, pair.R, S_y)
+    return float(metals.softer_share(x, pair.shape))
 
 
 @compiled

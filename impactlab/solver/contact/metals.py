@@ -22,7 +22,11 @@ The softer body begins to yield at x = x_0 = y^2, with y(nu) by von Mises below 
 the harder one at (y S_other/S)^2. A few first yields deep, the dent over the indentation is d, with
 d^2.3 the sum over both bodies of (A exp(0.35 w_0) w_0^p)^2.3, w_0 = 1 - sqrt(x_0/x), where
 A = 0.55 share^0.22 exp(-0.96 q) and p = 1.63 - 0.24 ln share have the body's own share of the
-compliance; q is 0 and nu 0.3 for the harder one (tests/benchmarks/first_dents.py).
+compliance; q is 0 and nu 0.3 for the harder one (tests/benchmarks/first_dents.py). Of what both
+yield the softer one has the share 1/(1 + (r^2.8 d_2/d_1)^2.3), with the two dents of that sum and
+r, the softer body's hardened flow stress over the other one's yield stress: 0.47 of two metals of
+S_other/S = 1.045 a few first yields deep, where it is 1 at 1.5, and 0.48, 0.85 and 1 at 1, 1.3 and
+2 deep in steel, by what a compressed beam changes of dents in 3-D.
 
 Fitted by tests/benchmarks/contact_law.py, which says to what, and writes them here. Beyond the
 data the numbers are held at their ends.
@@ -50,8 +54,8 @@ FIRST_YIELD = 0.97744, 0.72573, 0.34947, 0.13914
 von Mises stress on the axis of a Hertzian contact (Johnson 1985, Eq. 3.45) is S."""
 FIRST_DENT, FIRST_DENT_POWER, FIRST_DENT_GROWTH = (-0.589, 0.218, -0.961), (1.627, -0.241), 0.352
 """Factors of ln A, of p, and in the exponential."""
-BOTH_BODIES = 2.3
-"""Power in which the dents of both bodies are summed."""
+BOTH_BODIES, FLOWS = 2.3, 2.8
+"""Power in which the dents of both bodies are summed, and that of r in the softer one's share."""
 LARGEST_HARDENED = 2.0
 """Hardened flow stress under the contact over the other body's yield stress, beyond which runs are
 marked: that body then yields more than in the data; at 4.2 the force is 8 % too large."""
@@ -161,6 +165,21 @@ def first_dent(root: float, shape: Shape) -> float:
             dent = math.exp(shape[body + 1] + FIRST_DENT_GROWTH * w) * w ** shape[body + 2]
             total += dent**BOTH_BODIES
     return float(total ** (1.0 / BOTH_BODIES))
+
+
+@compiled
+def softer_share(x: float, shape: Shape) -> float:
+    """Return the share of the softer body in what both yield; x: delta/delta_y."""
+    root = 1.0 / math.sqrt(x)
+    w, others = 1.0 - shape[32] * root, 1.0 - shape[35] * root
+    if others <= 0.0:
+        return 1.0
+    if w <= 0.0:
+        return 0.0
+    log = shape[36] - shape[33] + FIRST_DENT_GROWTH * (others - w)
+    log += shape[37] * math.log(others) - shape[34] * math.log(w)
+    log += FLOWS * math.log(shape[31] * hardened(shape[25], x))
+    return 1.0 / (1.0 + math.exp(BOTH_BODIES * log))
 
 
 @compiled

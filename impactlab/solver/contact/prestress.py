@@ -10,7 +10,8 @@ contact radius below the surface, and x = delta_m/delta_y, yielding goes on at t
 Below it the contact is elastic, on the law's own unloading curve for delta_m, which is its only
 state: a changing stress does no work, and what is dissipated is what the free energy loses when
 delta_m grows. At first yield g is, to first order, von Mises' in the field of Hertz; by symmetry
-each of two stresses has half the effect of both.
+each of two stresses has half the effect of both. Where the sphere yields as well, g - 1 is less by
+its share in that (metals.py): it is under no such stress.
 
 K_0, K_1, B: fitted to prestress.csv, the half-space of tests/benchmarks/sphere_indentation.py under
 -0.6, -0.3 and 0.3 yield stresses in all directions along its surface (--depth 300 --elements 40).
@@ -42,6 +43,7 @@ from impactlab.solver.contact.history import (
     pair_radius,
     recovered,
     sideways,
+    softer_share,
     yield_stress,
 )
 from impactlab.solver.contact.stronge import yield_indentation
@@ -77,7 +79,8 @@ def _yields(contact: Record, pair: Pair) -> tuple[float, float]:
     s_x = (along * contact.F_m - left * contact.stress_along) / S_y
     s_y = (across * contact.F_m - left * contact.stress_across) / S_y
     x = contact.delta_m / yield_indentation(pair.E, pair.R, S_y)
-    F = strengthening(x, s_x, s_y) * contact.F_m
+    g = 1.0 + softer_share(contact, pair, S_y) * (strengthening(x, s_x, s_y) - 1.0)
+    F = g * contact.F_m
     if max(pair.crowding) > 0.0:
         bent = max(contact.stress_along / S_y, 0.0)
         F /= 1.0 + SHARED * bent * sideways(contact, pair)

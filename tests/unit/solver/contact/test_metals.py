@@ -195,6 +195,21 @@ def test_dents_a_few_first_yields_deep_are_those_of_the_finite_elements():
     assert np.abs(works).max() < 0.01
 
 
+@pytest.mark.parametrize(
+    ("metal", "x", "share"),
+    [
+        ((83.2, 0.291, 0.138, 0.00526, 0.0, 1.045), 3.5, 0.47),
+        ((83.2, 0.291, 0.138, 0.00526, 0.0, 1.5), 3.5, 1.0),
+        ((333.0, 0.5, 0.3, 0.0, 0.0, 1.0), 130.0, 0.48),
+        ((333.0, 0.5, 0.3, 0.0, 0.0, 1.3), 130.0, 0.85),
+        ((333.0, 0.5, 0.3, 0.0, 0.0, 2.0), 130.0, 1.0),
+    ],
+)
+def test_the_softer_metal_has_the_share_that_3d_shows(metal, x, share):
+    """By what a stress along the beam changes, beside what it does under a sphere that is hard."""
+    assert metals.softer_share(x, shape(*metal)) == pytest.approx(share, abs=0.05)
+
+
 def test_soft_metals_are_met_or_marked():
     """Force over the last third of loading; marks by hardening, as of a run of the same depth.
 

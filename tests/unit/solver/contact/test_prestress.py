@@ -14,6 +14,7 @@ from impactlab.model.contact_compliance import AT, bending_across, contact_stres
 from impactlab.solver.contact import LAWS, finite_element, prestress
 from impactlab.solver.contact.history import CONTACT, Pair, energies
 from impactlab.solver.contact.history import force as plain_force
+from impactlab.solver.contact.metals import shape
 from impactlab.solver.contact.stronge import yield_indentation
 
 E, R, S_y, nu = 115e9, 0.035, 345e6, 0.3
@@ -115,6 +116,19 @@ def test_without_stress_the_law_is_as_it_was(law):
         assert prestress.force(ours, alone, delta) == pytest.approx(expected, rel=1e-9, abs=1e-3)
     lost = energies(plain, alone._replace(prestress=(0.0, 0.0, 0.0)), delta)[1]
     assert energies(ours, alone, delta)[1] == pytest.approx(lost, rel=2e-2, abs=1e-6)
+
+
+@pytest.mark.parametrize(("hardness", "share"), [(1.0, 0.5), (20.0, 1.0)])
+def test_a_sphere_that_yields_as_well_is_under_no_stress(hardness, share):
+    bodies = pair()._replace(shape=shape(E / S_y, 0.5, nu, 0.0, 0.0, hardness))
+    contact = untouched()
+    contact.stress_along = 0.3 * S_y
+    F = prestress.force(contact, bodies, 2e-4)
+    depth = 1.0 - finite_element.radius(contact.delta_m, E, R, S_y, nu, bodies.shape) / DEPTH
+    s_x, s_y = bodies.prestress[1] * contact.F_m / S_y - 0.3 * depth, -300.0 * contact.F_m / S_y
+    alone = prestress.strengthening(contact.delta_m / FIRST, s_x, s_y)
+    assert F / contact.F_m - 1.0 == pytest.approx(share * (alone - 1.0), rel=1e-9)
+    assert abs(alone - 1.0) > 0.01
 
 
 def test_a_strip_has_its_static_stress_across_from_its_own_bending():
